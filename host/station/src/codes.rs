@@ -52,6 +52,7 @@ codes::codes! {
         NoLane [lane, known] => "lane-unknown",
         WhichLane [lanes] => "lane-not-named",
         ChoiceOver [lane, seconds] => "lane-choice-over",
+        Together [lanes] => "boards-came-together",
         Ambiguous [serial, first, second] => "serial-of-two-products",
         Elsewhere [serial, lane] => "serial-in-other-lane",
         = Barcode,

@@ -9,7 +9,7 @@ use std::sync::{Arc, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::engine::{Engine, LaneState};
+use crate::engine::Engine;
 use crate::floor::Word;
 use crate::plan::serial::SerialRule;
 use crate::settings::Settings;
@@ -98,11 +98,12 @@ fn line(engine: &Weak<Engine>, fixtures: &[Fixture], rule: &SerialRule) {
         {
             if known.0 != state.state {
                 *known = (state.state, Instant::now(), REST + DRAWN_REST * u32::from(drawn::<1>()[0]));
-                if is_over(state) {
+                if state.state.is_verdict() {
                     fixture.exchange();
                 }
             }
-            let is_due = (is_over(state) || state.state == Word::Ready) && known.1.elapsed() > known.2;
+            let is_due =
+                (state.state.is_verdict() || state.state == Word::Ready) && known.1.elapsed() > known.2;
             if let Some(serial) = serial(rule).filter(|_| is_due && lane < by_itself) {
                 engine.label(0, Some(lane), &serial, OPERATOR, None);
             }
@@ -110,8 +111,4 @@ fn line(engine: &Weak<Engine>, fixtures: &[Fixture], rule: &SerialRule) {
         drop(engine);
         thread::sleep(LOOK);
     }
-}
-
-fn is_over(state: &LaneState) -> bool {
-    matches!(state.state, Word::Pass | Word::Fail | Word::Error)
 }

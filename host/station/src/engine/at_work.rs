@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use halfrow::verdict::StoppedBy;
 
 use super::bay::{self, Shared, StopAsked};
-use super::in_turn::{InTurn, NotStarted};
+use super::in_turn::{InTurn, NotStarted, Shows};
 use super::known::{Known, KnownOfLanes};
 use super::news::{LaneState, News};
 use super::unsent;
@@ -63,6 +63,8 @@ impl AtWork {
 
     /// Works until it is told to close and every run is over.
     pub(super) fn run(mut self, inbox: &Receiver<Input>) {
+        // An earlier start may have left a lamp on.
+        (0..self.hooks.len()).for_each(|lane| self.hook(lane, None));
         let (mut looked, mut is_closing) = (None::<Instant>, false);
         while !(is_closing && self.is_idle()) {
             self.works();
@@ -101,6 +103,8 @@ impl AtWork {
 
     /// Waits for hooks, recoveries and what labgrid lent, and publishes what hooks still report.
     fn end(mut self, inbox: &Receiver<Input>) {
+        // Nobody would put a lamp out over the next board.
+        (0..self.hooks.len()).for_each(|lane| self.hook(lane, None));
         let hooks = std::mem::take(&mut self.hooks).into_iter().flat_map(InTurn::into_threads);
         for thread in std::mem::take(&mut self.threads).into_iter().chain(hooks) {
             if thread.join().is_err() {
@@ -132,13 +136,13 @@ impl AtWork {
             self.effect(lane, run.map(|run| Effect::Recover { run }));
         }
         let now = self.now();
-        for lane in 0..self.presence.len() {
-            let Some(settings) = self.shared.settings.lanes.get(lane) else { continue };
-            let is_seen = settings.board.is_there(Path::new(USB));
-            let changed = self.presence.get_mut(lane).and_then(|presence| presence.look(is_seen, now));
-            if let Some(is_present) = changed {
-                self.happened(lane, Event::Present(is_present));
-            }
+        let lanes = self.shared.settings.lanes.iter().zip(&mut self.presence).enumerate();
+        let changed = lanes.filter_map(|(lane, (settings, presence))| {
+            Some((lane, presence.look(settings.board.is_there(Path::new(USB)), now)?))
+        });
+        let changed: Vec<_> = changed.collect();
+        for (lane, effect) in self.floor.looked(&changed, now) {
+            self.carry_out(lane, effect);
         }
     }
 
@@ -255,6 +259,11 @@ impl AtWork {
     fn happened(&mut self, lane: usize, event: Event) {
         self.shared.note(lane, &event);
         let effect = self.floor.happened(lane, event, self.now());
+        self.carry_out(lane, effect);
+    }
+
+    /// Publishes what has become of a lane, and carries out the effect.
+    fn carry_out(&mut self, lane: usize, effect: Option<Effect>) {
         // When plugging a board in started the run, it is the lane that says why it was not begun.
         let effect = self.admit(lane, effect).ok().flatten();
         self.publish(lane);
@@ -297,7 +306,13 @@ impl AtWork {
         let Some(effect) = effect else { return };
         let started = match effect.clone() {
             Effect::Stop => return self.stop(lane, Some(StoppedBy::Person)),
-            Effect::Hooks(shown) => return self.hook(lane, shown),
+            Effect::Hooks(shown) => {
+                self.hook(lane, Some(shown));
+                if !self.has_verdict(lane) {
+                    self.hook(lane, None);
+                }
+                return;
+            }
             Effect::Begin(accepted) => self.begin(lane, accepted),
             Effect::Recover { run } => bay::recover(&self.shared, lane, run),
         };
@@ -323,13 +338,22 @@ impl AtWork {
         }
     }
 
-    /// Starts the hooks for what is shown, or reports why not.
-    fn hook(&mut self, lane: usize, shown: Shown) {
-        let Some(turns) = self.hooks.get_mut(lane).filter(|_| self.shared.has_hook(shown.verdict)) else {
+    /// Whether the lane shows a verdict.
+    fn has_verdict(&self, lane: usize) -> bool {
+        self.floor.lanes().get(lane).is_some_and(|lane| lane.word().is_verdict())
+    }
+
+    /// Starts the hooks for what is shown, or for that nothing is any more, or reports why not.
+    fn hook(&mut self, lane: usize, shown: Option<Shown>) {
+        let (of, run) =
+            (shown.as_ref().map(|shown| shown.verdict), shown.as_ref().map(|shown| shown.run.clone()));
+        let Some(turns) = self.hooks.get_mut(lane).filter(|_| self.shared.hooks(of).next().is_some()) else {
             return;
         };
-        let (shared, run) = (Arc::clone(&self.shared), shown.run.clone());
-        let begun = turns.begin(format!("hooks of lane {lane}"), move || bay::hook(&shared, lane, &shown));
+        let shared = Arc::clone(&self.shared);
+        let shows = if shown.is_some() { Shows::Verdict } else { Shows::Nothing };
+        let begun = turns
+            .begin(shows, format!("hooks of lane {lane}"), move || bay::hook(&shared, lane, shown.as_ref()));
         let why = match begun {
             Ok(()) => return,
             Err(NotStarted::Behind(verdicts)) => Saying::HooksBehind { verdicts },
@@ -353,15 +377,18 @@ impl AtWork {
         }
     }
 
-    /// Publishes the state of a lane if it has changed.
+    /// Publishes the state of a lane if it has changed. Lamps show a verdict no longer than the screen does.
     fn publish(&mut self, lane: usize) {
         let Some(state) = self.floor.lanes().get(lane).map(LaneState::from) else { return };
         let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
-        match live.lanes.get_mut(lane) {
-            Some(known) if *known != state => *known = state.clone(),
-            _ => return,
-        }
+        let Some(known) = live.lanes.get_mut(lane).filter(|known| **known != state) else { return };
+        let is_cleared = known.state.is_verdict() && !state.state.is_verdict();
+        known.clone_from(&state);
         live.listeners.tell(&News::Lane(state));
+        drop(live);
+        if is_cleared {
+            self.hook(lane, None);
+        }
     }
 
     fn tell(&self, news: &News) {

@@ -21,7 +21,7 @@ use crate::lane::Message;
 use crate::outbox::{Sent, awaited};
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
-use crate::settings::Settings;
+use crate::settings::{Hook, Settings};
 use crate::store::{Folder, SharedStore};
 
 /// How long to wait before trying again to save a result.
@@ -43,9 +43,9 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// Whether anything is started for this verdict.
-    pub(super) fn has_hook(&self, verdict: Verdict) -> bool {
-        self.settings.hooks.iter().any(|hook| hook.on == verdict)
+    /// What is started for this verdict, or when none is shown any more.
+    pub(super) fn hooks(&self, on: Option<Verdict>) -> impl Iterator<Item = &Hook> {
+        self.settings.hooks.iter().filter(move |hook| hook.on == on)
     }
 
     /// Logs and counts what happened to a lane.
@@ -122,16 +122,16 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
     })
 }
 
-/// Runs the hooks for what is shown on `lane`, one after another.
-pub(super) fn hook(shared: &Shared, lane: usize, shown: &Shown) {
+/// Runs the hooks for what is shown on `lane`, or for that nothing is any more, one after another.
+pub(super) fn hook(shared: &Shared, lane: usize, shown: Option<&Shown>) {
     let name = shared.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
-    for hook in shared.settings.hooks.iter().filter(|hook| hook.on == shown.verdict) {
+    for hook in shared.hooks(shown.map(|shown| shown.verdict)) {
         let said = match guarded(|| hooks::run(hook, name, shown)) {
             Ok(Ok(())) => continue,
             Ok(Err(error)) => Said::of(&error),
             Err(fault) => Said::of(&fault),
         };
-        shared.tell(lane, LaneEvent::Hook { run: shown.run.clone(), said });
+        shared.tell(lane, LaneEvent::Hook { run: shown.map(|shown| shown.run.clone()), said });
     }
 }
 
@@ -168,6 +168,7 @@ fn shown(saved: Saved) -> Shown {
         remedy: record.conclusion.remedy,
         finding: record.conclusion.finding,
         saved_ms,
+        board_kind: record.board.map(|board| board.kind),
     }
 }
 

@@ -1,4 +1,5 @@
-//! Programs that are told of a saved verdict: lamps, label printers, relays. What they do changes no verdict.
+//! Programs that are told of a saved verdict, or that none is shown any more: lamps, label printers, relays. What they
+//! do changes no verdict.
 
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
@@ -52,11 +53,11 @@ fn of(said: &str) -> String {
     if said.is_empty() { String::new() } else { format!(": {said}") }
 }
 
-/// Runs `hook` for the verdict that is shown on `lane`, until it ends or its deadline passes.
+/// Runs `hook` for the verdict that is shown on `lane`, if one is, until it ends or its deadline passes.
 ///
 /// # Errors
 /// [`HookError`] when it did not end well.
-pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookError> {
+pub(super) fn run(hook: &Hook, lane: &str, shown: Option<&Shown>) -> Result<(), HookError> {
     let program = || hook.program.display().to_string();
     let mut child = without_secrets(&hook.program)
         .args(hook.arguments.iter().map(|argument| filled(argument, lane, shown)))
@@ -115,7 +116,8 @@ fn heard(told: &Receiver<Vec<u8>>) -> Vec<u8> {
 }
 
 /// An argument with its placeholders filled in.
-fn filled(argument: &str, lane: &str, shown: &Shown) -> String {
+fn filled(argument: &str, lane: &str, shown: Option<&Shown>) -> String {
+    let Some(shown) = shown else { return argument.replace("{lane}", lane) };
     let verdict = shown.verdict.to_string();
     let values = [lane, &shown.serial, &verdict, &shown.run, &shown.record_sha256, &shown.headline];
     let mut filled = String::new();
@@ -154,31 +156,38 @@ mod tests {
             remedy: None,
             finding: None,
             saved_ms: 0,
+            board_kind: None,
         }
     }
 
     fn hook(script: &str, deadline: u64) -> Hook {
         let arguments = ["-c", script].map(str::to_owned).to_vec();
-        Hook { on: Verdict::Fail, program: "sh".into(), arguments, deadline: Duration::from_secs(deadline) }
+        Hook {
+            on: Some(Verdict::Fail),
+            program: "sh".into(),
+            arguments,
+            deadline: Duration::from_secs(deadline),
+        }
     }
 
     #[test]
     fn arguments_say_what_happened_and_a_value_stays_as_it_is() {
-        let of = |argument: &str| filled(argument, "3", &shown("a {serial} row"));
+        let of = |argument: &str| filled(argument, "3", Some(&shown("a {serial} row")));
         assert_eq!(of("{lane}: {verdict} {serial}"), "3: FAIL CA1");
         assert_eq!(of("{headline}|{run}|{record}"), "a {serial} row|id|abcd");
         assert_eq!(of("plain {"), "plain {");
+        assert_eq!(filled("{lane}: off", "3", None), "3: off");
     }
 
     #[test]
     fn a_hook_that_fails_says_why() {
-        run(&hook("exit 0", 60), "1", &shown("x")).unwrap();
-        let failed = run(&hook("echo no paper >&2; exit 3", 60), "1", &shown("x")).unwrap_err();
+        run(&hook("exit 0", 60), "1", Some(&shown("x"))).unwrap();
+        let failed = run(&hook("echo no paper >&2; exit 3", 60), "1", Some(&shown("x"))).unwrap_err();
         assert!(failed.to_string().contains("(exit status: 3): no paper;"), "{failed}");
-        let silent = run(&hook("exit 3", 60), "1", &shown("x")).unwrap_err();
+        let silent = run(&hook("exit 3", 60), "1", Some(&shown("x"))).unwrap_err();
         assert!(silent.to_string().ends_with("failed (exit status: 3); look at what it drives"), "{silent}");
         let missing = Hook { program: "/no/such/program".into(), ..hook("", 60) };
-        assert!(matches!(run(&missing, "1", &shown("x")), Err(HookError::Start { .. })));
+        assert!(matches!(run(&missing, "1", Some(&shown("x"))), Err(HookError::Start { .. })));
     }
 
     /// What it leaves in another session is not killed with it.
@@ -191,7 +200,7 @@ mod tests {
             "echo no paper >&2; setsid sh -c 'echo $$ > {id}; exec sleep 1000' &
             until test -s {id}; do sleep 0.01; done; exit 4"
         );
-        let failed = run(&hook(&leaves, 600), "1", &shown("x")).unwrap_err();
+        let failed = run(&hook(&leaves, 600), "1", Some(&shown("x"))).unwrap_err();
         let id: u32 = std::fs::read_to_string(id.to_string()).unwrap().trim().parse().unwrap();
         assert!(std::path::Path::new(&format!("/proc/{id}")).exists(), "it is there still");
         kill(id);
@@ -205,7 +214,7 @@ mod tests {
         // A busy machine may need longer to start it than the first deadlines allow.
         let begun = [1, 8, 64].into_iter().any(|deadline| {
             let hangs = hook(&format!("sleep 1000 & echo $! > {}; wait", id.display()), deadline);
-            assert!(matches!(run(&hangs, "1", &shown("x")), Err(HookError::Late { .. })));
+            assert!(matches!(run(&hangs, "1", Some(&shown("x"))), Err(HookError::Late { .. })));
             std::fs::read_to_string(&id).is_ok_and(|id| id.ends_with('\n'))
         });
         assert!(begun);

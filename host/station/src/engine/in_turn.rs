@@ -1,4 +1,4 @@
-//! The hooks of a lane, in the order of their verdicts.
+//! The hooks of a lane, in the order of what they show.
 
 use std::io;
 use std::sync::mpsc::{self, Receiver};
@@ -17,11 +17,21 @@ pub(super) enum NotStarted {
     NoThread(io::Error),
 }
 
+/// What hooks show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shows {
+    /// A verdict.
+    Verdict,
+    /// That there is no verdict any more. It is begun after every verdict, however much waits: a lamp must not stay green
+    /// over the next board.
+    Nothing,
+}
+
 /// The hooks of one lane.
 #[derive(Debug)]
 pub(super) struct InTurn {
-    threads: Vec<JoinHandle<()>>,
-    /// Ends when the hooks of the last verdict are done.
+    threads: Vec<(JoinHandle<()>, Shows)>,
+    /// Ends when the hooks that were begun last are done.
     last: Receiver<()>,
 }
 
@@ -30,18 +40,22 @@ impl InTurn {
         Self { threads: Vec::new(), last: mpsc::channel().1 }
     }
 
-    /// Does `work` in a thread of this name, once all that was begun before is done.
+    /// Does `work`, which `shows` this, in a thread of this name, once all that was begun before is done.
     ///
     /// # Errors
     /// [`NotStarted`]
     pub(super) fn begin(
         &mut self,
+        shows: Shows,
         name: String,
         work: impl FnOnce() + Send + 'static,
     ) -> Result<(), NotStarted> {
-        self.threads.retain(|thread| !thread.is_finished());
-        if self.threads.len() >= MOST {
-            return Err(NotStarted::Behind(self.threads.len()));
+        self.threads.retain(|(thread, _)| !thread.is_finished());
+        let verdicts = self.threads.iter().filter(|(_, shows)| *shows == Shows::Verdict).count();
+        match shows {
+            Shows::Verdict if verdicts >= MOST => return Err(NotStarted::Behind(verdicts)),
+            Shows::Nothing if self.threads.last().is_some_and(|(_, last)| *last == shows) => return Ok(()),
+            _ => {}
         }
         // The turn is taken only once there is a thread for it.
         let (give, turn) = mpsc::channel::<(Receiver<()>, mpsc::Sender<()>)>();
@@ -52,15 +66,16 @@ impl InTurn {
             work();
             drop(done);
         };
-        self.threads.push(thread::Builder::new().name(name).spawn(in_turn).map_err(NotStarted::NoThread)?);
+        let thread = thread::Builder::new().name(name).spawn(in_turn).map_err(NotStarted::NoThread)?;
+        self.threads.push((thread, shows));
         let (done, last) = mpsc::channel();
         let _ = give.send((std::mem::replace(&mut self.last, last), done));
         Ok(())
     }
 
     /// The threads that are not done yet.
-    pub(super) fn into_threads(self) -> Vec<JoinHandle<()>> {
-        self.threads
+    pub(super) fn into_threads(self) -> impl Iterator<Item = JoinHandle<()>> {
+        self.threads.into_iter().map(|(thread, _)| thread)
     }
 }
 
@@ -83,13 +98,22 @@ mod tests {
                 }
                 done.lock().unwrap().push(number);
             };
-            turns.begin("hooks".to_owned(), work).unwrap();
+            turns.begin(Shows::Verdict, "hooks".to_owned(), work).unwrap();
         }
-        let one_more = turns.begin("hooks".to_owned(), || panic!("there is no room for it"));
+        let one_more = turns.begin(Shows::Verdict, "hooks".to_owned(), || panic!("there is no room for it"));
         assert!(matches!(one_more, Err(NotStarted::Behind(MOST))), "{one_more:?}");
+        for number in [MOST, MOST + 1] {
+            let done = Arc::clone(&done);
+            let cleared = move || done.lock().unwrap().push(number);
+            turns.begin(Shows::Nothing, "hooks".to_owned(), cleared).unwrap();
+        }
         assert!(done.lock().unwrap().is_empty());
         drop(go);
-        turns.into_threads().into_iter().for_each(|thread| thread.join().unwrap());
-        assert_eq!(*done.lock().unwrap(), (0..MOST).collect::<Vec<_>>());
+        turns.into_threads().for_each(|thread| thread.join().unwrap());
+        assert_eq!(
+            *done.lock().unwrap(),
+            (0..=MOST).collect::<Vec<_>>(),
+            "the last verdict is cleared, once"
+        );
     }
 }

@@ -59,7 +59,7 @@ enum Input {
 enum LaneEvent {
     Happened(Event),
     Doing { run: String, what: String, rows: Option<(u64, u64)> },
-    Hook { run: String, said: Said },
+    Hook { run: Option<String>, said: Said },
 }
 
 /// A station at work.

@@ -45,8 +45,9 @@ pub enum News {
     Hook {
         /// The lane.
         lane: String,
-        /// The run.
-        run: String,
+        /// The run; `None` when the hook should have shown that there is no verdict any more.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        run: Option<String>,
         /// What went wrong.
         #[serde(serialize_with = "said::as_text")]
         said: Said,
@@ -68,7 +69,7 @@ pub struct LaneState {
     pub run: Option<String>,
     /// The last verdict, which is saved.
     pub shown: Option<Shown>,
-    /// The verdict of the board before, where another one was plugged in since.
+    /// The verdict of the board before, where another one was plugged in since, or that on the mock.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last: Option<Shown>,
     /// Why it is out of service, what it is to test first, why nothing was saved, or why no run was begun.
@@ -137,8 +138,11 @@ mod tests {
     #[test]
     fn a_slow_listener_is_let_go_and_the_others_hear_everything() {
         let mut listeners = Listeners::default();
-        let news =
-            || News::Hook { lane: "1".to_owned(), run: "r".to_owned(), said: Saying::OutByPerson.into() };
+        let news = || News::Hook {
+            lane: "1".to_owned(),
+            run: Some("r".to_owned()),
+            said: Saying::OutByPerson.into(),
+        };
         let (slow, quick) = (listeners.add(std::iter::empty()), listeners.add(std::iter::once(news())));
         quick.recv().unwrap();
         for _ in 0..=BACKLOG {

@@ -43,6 +43,7 @@ fn properties(record: &Record) -> Vec<(&'static str, String)> {
         ("lane", run.lane.clone()),
         ("operator", run.operator.clone()),
         ("plan.sha256", record.plan.sha256.clone()),
+        ("production", record.production.to_string()),
         ("board.target", run.target.clone()),
         ("halfrow.version", record.program.clone()),
     ];
@@ -147,7 +148,7 @@ mod tests {
         assert!(element(&document, "testcase", "\"verdict\"").contains("Put the board aside."));
         element(&document, "testcase", "\"run.seconds (run)\"");
         for (name, value) in
-            [("product", "CAM-A"), ("serial", "CA1"), ("station", "12"), ("operator", "weber")]
+            [("product", "CAM-A"), ("serial", "CA1"), ("operator", "weber"), ("production", "true")]
         {
             let property = format!("<property name=\"{name}\" value=\"{value}\"");
             assert!(document.contains(&property), "{property}: {document}");

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  EMPTY ─ board ─► READY ─ serial number ─► RUNNING ─► SAVING ─► PASS | FAIL | ERROR ─ next serial number ─► …
-//!    └ serial number ─► WAITING ─ board or button ─┘        │                 └ next board ─► READY
+//!    └ serial number ─► WAITING ─ board or button ─┘        │                 └ next board, or of the mock ─► READY
 //!                                                           └ UNSAVED ─ the disk is well ─► ERROR
 //!  OUT: taken out of service by a person, or because its process cannot be killed; or it owes a check, and shows no verdict
 //! ```
@@ -147,7 +147,7 @@ impl Lane {
         self.shown.as_ref()
     }
 
-    /// The verdict of the board before, once another one was plugged in, until the next serial number.
+    /// The verdict of the board before, once another one was plugged in, or that on the mock, until the next serial number.
     #[must_use]
     pub fn last(&self) -> Option<&Shown> {
         self.last.as_ref()
@@ -315,12 +315,17 @@ impl Lane {
         Ok(None)
     }
 
-    /// The phase after a verdict, which is shown over no other board.
-    fn ended(&mut self, shown: Shown) -> Phase {
-        let (of, phase) =
-            if self.has_other { (&mut self.last, Phase::Idle) } else { (&mut self.shown, Phase::Ended) };
+    /// The phase after a verdict, which is shown over no other board. No board has the verdict on the mock, so no lamp
+    /// and no label does, either.
+    fn ended(&mut self, shown: Shown) -> (Phase, Option<Effect>) {
+        let effect = (!shown.is_on_mock()).then(|| Effect::Hooks(shown.clone()));
+        let (of, phase) = if self.has_other || shown.is_on_mock() {
+            (&mut self.last, Phase::Idle)
+        } else {
+            (&mut self.shown, Phase::Ended)
+        };
         *of = Some(shown);
-        phase
+        (phase, effect)
     }
 
     /// Takes what its run reports. A report that does not fit the phase is late, and changes nothing.
@@ -338,7 +343,7 @@ impl Lane {
                 (Phase::Idle, None)
             }
             (Phase::Running { .. } | Phase::Saving { .. } | Phase::Unsaved { .. }, Event::Ended(shown)) => {
-                (self.ended(shown.clone()), Some(Effect::Hooks(shown)))
+                self.ended(shown)
             }
             (
                 Phase::Running { of, run } | Phase::Saving { of, run } | Phase::Unsaved { of, run, .. },

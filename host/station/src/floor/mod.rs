@@ -2,11 +2,13 @@
 //!
 //! 1. The lane whose barcode was scanned before, for one scan, if it comes soon.
 //! 2. The only lane there is.
-//! 3. With the order scan-then-plug: the next lane into which a board is plugged, within a minute.
+//! 3. With the order scan-then-plug: the next lane into which a board is plugged, within a minute. Boards that come
+//!    together get none.
 //!
 //! Never silently the first free one.
 
 mod lane;
+mod pending;
 mod scan;
 mod words;
 
@@ -16,11 +18,11 @@ pub use lane::Lane;
 pub use scan::{Act, Scan, UnknownBarcode};
 pub use words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
 
+use pending::Pending;
+
 use crate::plan::serial::{SerialError, SerialRule};
 use crate::said::{Said, Saying};
 
-/// How long a serial number waits for a lane.
-const WAIT: Duration = Duration::from_secs(60);
 /// How long a lane that was chosen waits for a scan. Later somebody else may scan, for the board in another lane.
 pub(crate) const CHOSEN: Duration = Duration::from_secs(15);
 
@@ -91,6 +93,14 @@ pub enum ScanError {
         /// How long a choice lasts.
         seconds: u64,
     },
+    /// Boards came into several lanes at once, and a serial number that waited may belong to any of them.
+    #[error(
+        "boards came into the lanes {lanes} at the same time, and it may be any of them; choose the board's lane"
+    )]
+    Together {
+        /// The lanes.
+        lanes: String,
+    },
     /// It is no serial number.
     #[error(transparent)]
     Serial(#[from] SerialError),
@@ -138,21 +148,6 @@ pub struct Floor {
     pending: Option<Pending>,
 }
 
-/// A serial number that waits for a lane.
-#[derive(Clone, Debug)]
-struct Pending {
-    serial: String,
-    /// Who scanned it.
-    operator: String,
-    since: Duration,
-}
-
-impl Pending {
-    fn is_fresh(&self, now: Duration) -> bool {
-        now.saturating_sub(self.since) <= WAIT
-    }
-}
-
 impl Floor {
     /// With these lanes, and the rules of all plans. `scan_then_plug` allows the third way in the head of this module.
     #[must_use]
@@ -166,12 +161,6 @@ impl Floor {
     #[must_use]
     pub fn lanes(&self) -> &[Lane] {
         &self.lanes
-    }
-
-    /// The serial number that waits for a lane at the time `now`.
-    #[must_use]
-    pub fn pending(&self, now: Duration) -> Option<&str> {
-        self.pending.as_ref().filter(|pending| pending.is_fresh(now)).map(|pending| pending.serial.as_str())
     }
 
     /// Takes what `operator` scanned at the time `now`, by any clock that only goes forward.
@@ -253,26 +242,12 @@ impl Floor {
         Ok(ScanOutcome { lane: Some(lane), effect, said: said.into() })
     }
 
-    /// Takes what happened to a lane at the time `now`. A serial number that waits belongs to the next board that is
-    /// plugged in: it goes to that board's lane, or to none.
+    /// Takes what happened to a lane at the time `now`.
     pub fn happened(&mut self, lane: usize, event: Event, now: Duration) -> Option<Effect> {
-        let came =
-            event == Event::Present(true) && self.lanes.get(lane).is_some_and(|lane| !lane.is_present());
-        let effect = self.lanes.get_mut(lane)?.take(event).ok()?;
-        if effect.is_some() || !came {
-            return effect;
+        if let Event::Present(is_present) = event {
+            return self.looked(&[(lane, is_present)], now).pop()?.1;
         }
-        let Pending { serial, operator, .. } = self.pending.take().filter(|pending| pending.is_fresh(now))?;
-        match self.give(lane, &serial, &operator) {
-            // Some lanes are started by plugging the board in.
-            Ok(answer) => {
-                answer.effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
-            }
-            Err(refused) => {
-                self.lanes.get_mut(lane)?.miss(Saying::NotGiven { serial, why: Said::of(&refused) }.into());
-                None
-            }
-        }
+        self.lanes.get_mut(lane)?.take(event).ok()?
     }
 
     /// The lane that a scan is for, if `armed` was named before.
@@ -321,19 +296,6 @@ impl Floor {
         let effect = self.lane(lane)?.take(Event::Given(accepted))?;
         let said = Saying::MockJudged { lane: self.name(lane).to_owned() };
         Ok(ScanOutcome { lane: Some(lane), effect, said: said.into() })
-    }
-
-    /// Keeps the serial number for the next lane into which a board is plugged.
-    fn keep(&mut self, serial: String, operator: &str, now: Duration) -> Result<ScanOutcome, ScanError> {
-        let all: Vec<usize> = (0..self.rules.len()).collect();
-        let accepted = self.read(&all, &serial, operator)?;
-        self.refuse_elsewhere(usize::MAX, &accepted)?;
-        let said = match self.pending(now).map(str::to_owned) {
-            Some(other) => Saying::WaitsInstead { serial: serial.clone(), other },
-            None => Saying::WaitsForPlug { serial: serial.clone() },
-        };
-        self.pending = Some(Pending { serial, operator: operator.to_owned(), since: now });
-        Ok(ScanOutcome { lane: None, effect: None, said: said.into() })
     }
 
     /// Reads the serial number by the one of these plans that takes it.

@@ -1,8 +1,10 @@
 //! What happens to a lane, what is to be done then, and what is said about it.
 
 use halfrow::Verdict;
+use halfrow::target::BoardKind;
 use serde::Serialize;
 
+use crate::plan::mock::is_mock;
 use crate::said::Said;
 
 /// How runs of a lane are started.
@@ -48,6 +50,22 @@ pub struct Shown {
     pub finding: Option<Said>,
     /// When it was saved, in milliseconds since 1970, UTC.
     pub saved_ms: i64,
+    /// What kind of board was judged, such as `hardware` or `mock`, if it said so.
+    pub board_kind: Option<String>,
+}
+
+impl Shown {
+    /// Whether no real board was judged, as far as is known.
+    #[must_use]
+    pub(crate) fn is_of_no_hardware(&self) -> bool {
+        self.board_kind.as_ref().is_some_and(|kind| *kind != BoardKind::Hardware.to_string())
+    }
+
+    /// Whether it is a verdict on the mock that checks a shift, and so on no board in a lane.
+    #[must_use]
+    pub(crate) fn is_on_mock(&self) -> bool {
+        self.verdict != Verdict::Error && is_mock(&self.serial)
+    }
 }
 
 /// A lane's state, as people see it.
@@ -100,6 +118,12 @@ impl Word {
         Self::Unsaved,
         Self::Out,
     ];
+
+    /// Whether it is a verdict on the board in the lane, or on the one that was there last.
+    #[must_use]
+    pub const fn is_verdict(self) -> bool {
+        matches!(self, Self::Pass | Self::Fail | Self::Error)
+    }
 
     /// Its name for other programs, and in the style sheet.
     #[must_use]

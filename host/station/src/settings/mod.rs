@@ -50,7 +50,7 @@ pub struct Settings {
     pub plans: Vec<PlanFile>,
     /// The lanes: at least one, unless the settings were loaded by [`Self::load_without_lanes`].
     pub lanes: Vec<LaneSettings>,
-    /// What is started when a verdict is saved.
+    /// What is started when a verdict is saved, or no longer shown.
     pub hooks: Vec<Hook>,
     /// Where the pages are.
     pub address: Address,
@@ -144,11 +144,11 @@ impl Scanner {
     }
 }
 
-/// A program that is started when a verdict of its kind is saved.
+/// A program that is started when a verdict of its kind is saved, or when a lane shows none any more.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hook {
-    /// The verdict.
-    pub on: Verdict,
+    /// The verdict; `None` when the lane shows none any more.
+    pub on: Option<Verdict>,
     /// The program.
     pub program: PathBuf,
     /// Its arguments, in which [`WORDS`] in braces are replaced.
@@ -159,6 +159,16 @@ pub struct Hook {
 
 /// The words that an argument of a hook may have in braces.
 pub const WORDS: [&str; 6] = ["lane", "serial", "verdict", "run", "record", "headline"];
+
+impl Hook {
+    /// Those of [`WORDS`] that mean something to a hook on this.
+    pub(crate) const fn words(on: Option<Verdict>) -> &'static [&'static str] {
+        match on {
+            Some(_) => &WORDS,
+            None => &["lane"],
+        }
+    }
+}
 
 impl Settings {
     /// The settings in the file `path`, whose own paths are relative to it.

@@ -11,7 +11,7 @@ use super::plans::Plans;
 use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText, WorkText};
 use super::{
     AccessSettings, Hook, LaneSettings, PlansOfPlant, PlantSettings, SCHEMA, Scanner, Settings, SinkSettings,
-    WORDS, WorkSettings,
+    WorkSettings,
 };
 use crate::floor::Starts;
 use crate::input_error::Fault;
@@ -287,13 +287,17 @@ fn starts(text: &LaneText) -> Result<Starts, Fault> {
 }
 
 fn hooks(folder: &Path, read: &SettingsText) -> Result<Vec<Hook>, Fault> {
-    let kinds =
-        [(Verdict::Pass, &read.on_pass), (Verdict::Fail, &read.on_fail), (Verdict::Error, &read.on_error)];
+    let kinds = [
+        (Some(Verdict::Pass), &read.on_pass),
+        (Some(Verdict::Fail), &read.on_fail),
+        (Some(Verdict::Error), &read.on_error),
+        (None, &read.on_clear),
+    ];
     let all = kinds.into_iter().flat_map(|(on, texts)| texts.iter().map(move |text| hook(folder, on, text)));
     all.collect()
 }
 
-fn hook(folder: &Path, on: Verdict, text: &HookText) -> Result<Hook, Fault> {
+fn hook(folder: &Path, on: Option<Verdict>, text: &HookText) -> Result<Hook, Fault> {
     let written = not_empty(&text.program)?;
     let program = program(folder, &written);
     if written.contains('/') && !program.is_file() {
@@ -304,10 +308,11 @@ fn hook(folder: &Path, on: Verdict, text: &HookText) -> Result<Hook, Fault> {
             "check its name; it is relative to this file",
         ));
     }
+    let known = Hook::words(on);
     for argument in &text.arguments {
-        if let Some(word) = unknown_word(argument.get_ref()) {
+        if let Some(word) = unknown_word(argument.get_ref(), known) {
             let what = format!("nothing is known that is called {{{word}}}");
-            let known = WORDS.map(|word| format!("{{{word}}}")).join(", ");
+            let known = known.iter().map(|word| format!("{{{word}}}")).collect::<Vec<_>>().join(", ");
             return Err(Fault::wrong(argument.span().start, what, format!("write one of {known}")));
         }
     }
@@ -321,7 +326,7 @@ pub(super) fn program(folder: &Path, written: &str) -> PathBuf {
 }
 
 /// The first word in braces that stands for nothing.
-fn unknown_word(argument: &str) -> Option<&str> {
+fn unknown_word<'a>(argument: &'a str, known: &[&str]) -> Option<&'a str> {
     let words = argument.split('{').skip(1).filter_map(|piece| piece.split_once('}'));
-    words.map(|(word, _)| word).find(|word| !WORDS.contains(word))
+    words.map(|(word, _)| word).find(|word| !known.contains(word))
 }

@@ -30,6 +30,8 @@ pub(super) struct SettingsText {
     pub(super) on_fail: Vec<HookText>,
     #[serde(default, rename = "on-error")]
     pub(super) on_error: Vec<HookText>,
+    #[serde(default, rename = "on-clear")]
+    pub(super) on_clear: Vec<HookText>,
 }
 
 /// `[station]`

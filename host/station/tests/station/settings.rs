@@ -42,6 +42,9 @@ arguments = ["{lane}", "green"]
 [[on-error]]
 program = "./print"
 deadline = 2.5
+[[on-clear]]
+program = "lamp"
+arguments = ["{lane}", "off"]
 "#;
 
 fn load(text: &str) -> Result<Settings, String> {
@@ -79,7 +82,7 @@ fn every_key_means_what_it_says() {
     assert_eq!(first.starts, Starts { scan: true, button: true, presence: false });
     assert_eq!(second.starts, Starts { scan: true, button: false, presence: false });
     let hooks: Vec<_> = settings.hooks.iter().map(|hook| (hook.on, hook.deadline.as_secs_f64())).collect();
-    assert_eq!(hooks, [(Verdict::Pass, 10.0), (Verdict::Error, 2.5)]);
+    assert_eq!(hooks, [(Some(Verdict::Pass), 10.0), (Some(Verdict::Error), 2.5), (None, 10.0)]);
     assert_eq!(settings.hooks[0].program.to_string_lossy(), "lamp", "looked for where the shell looks");
     assert!(settings.hooks[1].program.is_absolute());
 }
@@ -130,7 +133,7 @@ fn what_is_left_out_is_as_the_pages_say() {
     assert_eq!((&settings.plans[work.plans[0]].plan.product[..], work.plans.len()), ("CAM-T", 1));
     assert_eq!((work.has.as_slice(), work.at_once), (["fixture-3".to_owned()].as_slice(), 4));
     assert_eq!(load(&REST.replace("at_once = 4\n", "")).unwrap().work.unwrap().at_once, 1);
-    assert_eq!(settings.hooks.iter().map(|hook| hook.on).collect::<Vec<_>>(), [Verdict::Fail]);
+    assert_eq!(settings.hooks.iter().map(|hook| hook.on).collect::<Vec<_>>(), [Some(Verdict::Fail)]);
     let port = |sink: &SinkSettings| match &sink.to {
         Destination::Events { address, .. } => address.port,
         to => panic!("{to:?}"),

@@ -58,10 +58,12 @@ struct RunEvent<'a> {
     ended_ms: i64,
     /// Whether it counts as production.
     production: bool,
+    /// What kind of board was judged, if it said so.
+    board_kind: Option<&'a str>,
 }
 
 impl<'a> RunEvent<'a> {
-    fn of(Record { run, plan, conclusion, ended_ms, production, .. }: &'a Record) -> Self {
+    fn of(Record { run, plan, conclusion, ended_ms, production, board, .. }: &'a Record) -> Self {
         Self {
             schema: SCHEMA,
             run: &run.id,
@@ -77,6 +79,7 @@ impl<'a> RunEvent<'a> {
             started_ms: run.started_ms,
             ended_ms: *ended_ms,
             production: *production,
+            board_kind: board.as_ref().map(|board| board.kind.as_str()),
         }
     }
 }
@@ -233,6 +236,7 @@ mod tests {
             "started_ms": 1_000,
             "ended_ms": 2_500,
             "production": true,
+            "board_kind": null,
         });
         assert_eq!(event, told);
     }

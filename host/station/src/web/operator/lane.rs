@@ -5,7 +5,7 @@ use halfrow::words::plain;
 use maud::{Markup, html};
 use serde::Serialize;
 
-use super::shapes::{does, is_of_mock, said, shape};
+use super::shapes::{does, said, shape};
 use crate::clock;
 use crate::engine::LaneState;
 use crate::floor::{Act, Shown, Word};
@@ -30,7 +30,7 @@ pub(super) struct LaneEvent {
 impl LaneEvent {
     /// The event of this state, for `visit`.
     pub(super) fn new(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> Self {
-        let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
+        let shown = state.shown.as_ref().filter(|_| state.state.is_verdict());
         let serial = state.serial.as_deref().unwrap_or_default();
         let word = said(visit, state.state);
         Self {
@@ -47,13 +47,9 @@ impl LaneEvent {
     }
 }
 
-fn is_verdict(word: Word) -> bool {
-    matches!(word, Word::Pass | Word::Fail | Word::Error)
-}
-
 /// The lane.
 pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> Markup {
-    let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
+    let shown = state.shown.as_ref().filter(|_| state.state.is_verdict());
     let word = said(visit, state.state);
     html! {
         article.lane.(state.state.name()).(length(word)) id={ "lane-" (state.lane) } data-lane=(state.lane) aria-labelledby={ "name-" (state.lane) }
@@ -104,7 +100,7 @@ fn length(word: &str) -> &'static str {
 
 /// What the operator should do now, and why.
 fn says(visit: &Visit, state: &LaneState) -> Markup {
-    let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
+    let shown = state.shown.as_ref().filter(|_| state.state.is_verdict());
     let refused = state.refused.as_ref().map(|why| visit.words.parted(why, None));
     // What kept the last scan from being tested has to be dealt with first.
     let is_second = refused.as_ref().is_some_and(|(_, asked)| asked.is_some());
@@ -123,8 +119,7 @@ fn says(visit: &Visit, state: &LaneState) -> Markup {
         @if let Some(asked) = asked { p.asks lang=[asked.foreign] { (plain(&asked.text)) } }
         @for (told, _) in &told { (why(told, None)) }
         @if let Some(shown) = fail {
-            @let recorded = shown.remedy.as_ref().filter(|_| !is_of_mock(state));
-            @let remedy = recorded.map(|text| visit.words.remedy(shown.finding.as_ref(), text));
+            @let remedy = shown.remedy.as_ref().map(|text| visit.words.remedy(shown.finding.as_ref(), text));
             (why(&headline(visit, shown), remedy.as_ref()))
         }
     }

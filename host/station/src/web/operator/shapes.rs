@@ -3,8 +3,7 @@
 use maud::{Markup, html};
 
 use crate::engine::LaneState;
-use crate::floor::{Act, Word};
-use crate::plan::mock;
+use crate::floor::{Act, Shown, Word};
 use crate::web::routes::Who;
 use crate::web::visit::Visit;
 
@@ -41,8 +40,8 @@ pub(super) fn does(visit: &Visit, state: &LaneState, is_asked: bool) -> Option<&
         Word::Waiting => visit.say("does.plug"),
         Word::Running => visit.say("does.running"),
         Word::Saving => visit.say("does.saving"),
+        Word::Pass | Word::Fail if is_of_no_hardware(state) => visit.say("does.simulated"),
         Word::Pass => visit.say("does.pass"),
-        Word::Fail if is_of_mock(state) => visit.say("does.mock"),
         Word::Fail => visit.say("does.fail"),
         Word::Error => visit.say("does.error"),
         Word::Unsaved => visit.say("does.unsaved"),
@@ -50,9 +49,9 @@ pub(super) fn does(visit: &Visit, state: &LaneState, is_asked: bool) -> Option<&
     })
 }
 
-/// Whether the verdict is on the mock board, and not on the board in the lane.
-pub(super) fn is_of_mock(state: &LaneState) -> bool {
-    state.shown.as_ref().is_some_and(|shown| mock::is_mock(&shown.serial))
+/// Whether the verdict is on a board that a program plays.
+fn is_of_no_hardware(state: &LaneState) -> bool {
+    state.shown.as_ref().is_some_and(Shown::is_of_no_hardware)
 }
 
 /// The state's shape.

@@ -51,7 +51,8 @@ fn serial(number: usize) -> String {
 
 fn shown(verdict: Verdict) -> Shown {
     let [run, serial, record_sha256, headline] = ["r", "CA", "h", "w"].map(str::to_owned);
-    Shown { run, serial, verdict, record_sha256, headline, remedy: None, finding: None, saved_ms: 0 }
+    let (remedy, finding, board_kind) = (None, None, None);
+    Shown { run, serial, verdict, record_sha256, headline, remedy, finding, saved_ms: 0, board_kind }
 }
 
 fn plug(floor: &mut Floor, lane: usize) -> Option<Effect> {

@@ -124,6 +124,55 @@ fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
     assert_eq!(words(&floor), [Word::Pass, Word::Ready]);
 }
 
+/// Nobody knows which of them was plugged in first.
+#[test]
+fn a_number_goes_to_none_of_the_boards_that_come_together() {
+    let mut floor = floor(&[PLUG, SCAN, SCAN], true);
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    let effects = floor.looked(&[(0, true), (1, true)], at(1));
+    assert_eq!(effects, [(0, None), (1, None)]);
+    assert_eq!((words(&floor), floor.pending(at(1))), (vec![Word::Ready, Word::Ready, Word::Empty], None));
+    for lane in &floor.lanes()[..2] {
+        let note = lane.note().map(ToString::to_string).unwrap_or_default();
+        assert!(note.contains(&serial(0)) && note.contains("boards came into the lanes 1, 2"), "{note}");
+    }
+    assert_eq!(floor.happened(2, Event::Present(true), at(2)), None, "it waits no more");
+    assert!(floor.scan_for(1, &serial(0), WEBER, at(3)).unwrap().effect.is_some());
+}
+
+/// A board whose lane has its number already is not meant.
+#[test]
+fn a_number_goes_to_the_only_board_without_one_of_those_that_come_together() {
+    let mut floor = floor(&[PLUG, PLUG, SCAN], true);
+    plug(&mut floor, 2);
+    floor.scan_for(0, &serial(1), WEBER, at(0)).unwrap();
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    let begun = floor.looked(&[(0, true), (1, true), (2, false)], at(1));
+    let serials: Vec<_> = begun
+        .into_iter()
+        .map(|(lane, effect)| match effect {
+            Some(Effect::Begin(of)) => (lane, of.serial),
+            other => (lane, format!("{other:?}")),
+        })
+        .collect();
+    assert_eq!(serials, [(0, serial(1)), (1, serial(0)), (2, "None".to_owned())]);
+}
+
+/// The mock needs no fixture, and the board in the lane stays unjudged.
+#[test]
+fn the_verdict_on_the_mock_is_shown_over_no_board_and_lights_no_lamp() {
+    for verdict in [Verdict::Pass, Verdict::Fail] {
+        let mut floor = running();
+        let mock = Shown { serial: "HR:MOCK:1".to_owned(), ..shown(verdict) };
+        assert_eq!(floor.happened(0, Event::Ended(mock), at(1)), None, "no hook");
+        assert_eq!(told(&floor), (Word::Ready, None, None, Some(verdict)));
+    }
+    let mut floor = running();
+    let mock = Shown { serial: "HR:MOCK:1".to_owned(), ..shown(Verdict::Error) };
+    assert_eq!(floor.happened(0, Event::Ended(mock.clone()), at(1)), Some(Effect::Hooks(mock)));
+    assert_eq!(floor.lanes()[0].word(), Word::Error, "whose reason people are to see");
+}
+
 #[test]
 fn a_number_waits_a_minute_for_its_board() {
     for (seconds, word) in [(60, Word::Running), (61, Word::Ready)] {

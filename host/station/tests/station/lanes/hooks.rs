@@ -4,7 +4,7 @@ use std::process::Command;
 
 use super::floor::{SERIALS, Station};
 use super::stuck::Stuck;
-use crate::common::{program, script};
+use crate::common::{program, script, until};
 
 /// The hook records its arguments, and fails if the record is not stored by then, or if it is given the plant's password.
 #[test]
@@ -140,4 +140,56 @@ fn a_hook_that_failed_is_told_though_what_it_has_started_may_say_more() {
     let news = running.wait("a hook that failed", |news| news["news"] == "hook");
     assert!(news["said"].as_str().unwrap().contains("failed (exit status: 3)"), "{news}");
     assert_eq!(running.end().0, Some(0));
+}
+
+/// What the hooks of this station wrote, a line for each.
+fn lit(station: &Station) -> Vec<String> {
+    let lit = std::fs::read_to_string(station.path("lit")).unwrap_or_default();
+    lit.lines().map(str::to_owned).collect()
+}
+
+/// Hooks of every kind, which write what they show.
+fn lamps(station: &Station) -> String {
+    let script = script(&station.path(""), "lamp", "echo \"$1\" >> \"$(dirname \"$0\")/lit\"\n");
+    let hook = |on: &str, shows: &str| {
+        format!("[[on-{on}]]\nprogram = \"{}\"\narguments = [\"{shows}\"]\n", script.display())
+    };
+    let verdicts = ["pass", "fail", "error"].map(|on| hook(on, "{lane} {verdict}")).concat();
+    verdicts + &hook("clear", "{lane} off")
+}
+
+/// A lamp that an earlier start, or the board before, has left green must not shine over a board that nobody judged.
+#[test]
+fn a_lamp_is_put_out_when_the_page_shows_no_verdict_any_more() {
+    let station = Station::with(&["serial:port", "mock"], "");
+    let port = station.path("port");
+    let settings = std::fs::read_to_string(station.path("station.toml")).unwrap();
+    let settings = settings.replace("serial:port", &format!("serial:{}", port.display()));
+    std::fs::write(station.path("station.toml"), settings + &lamps(&station)).unwrap();
+    let mut running = station.start();
+    // The settings have been read: with such a file in the place of the port they would be refused.
+    running.state("2", "READY");
+    std::fs::write(&port, "").unwrap();
+    running.state("1", "READY");
+    running.test("1", SERIALS[0]);
+    running.state("1", "ERROR");
+    std::fs::remove_file(&port).unwrap();
+    running.wait("an empty lane", |news| news["lane"] == "1" && news["is_present"] == false);
+    until("the lamp of the verdict", || lit(&station).last().is_some_and(|last| last == "1 ERROR"));
+    std::fs::write(&port, "").unwrap();
+    assert_eq!(running.state("1", "READY")["last"]["verdict"], "ERROR");
+    until("a lamp that is out", || lit(&station).last().is_some_and(|last| last == "1 off"));
+    for serial in [SERIALS[1], SERIALS[2]] {
+        running.test("2", serial);
+        running.state("2", "PASS");
+    }
+    let (code, heard) = running.end();
+    assert_eq!(code, Some(0));
+    assert_eq!(heard.iter().filter(|news| news["news"] == "hook").count(), 0, "{heard:#?}");
+    let of = |lane: &str| {
+        let lit = lit(&station).into_iter().filter(|line| line.starts_with(lane));
+        lit.map(|line| line[2..].to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(of("1"), ["off", "ERROR", "off", "off"]);
+    assert_eq!(of("2"), ["off", "PASS", "off", "PASS", "off"], "by the next serial number, and at the end");
 }

@@ -92,31 +92,51 @@ fn what_to_do_is_told_once_and_in_one_language() {
 
 /// The mock checks the shift, and says nothing about the board in the lane.
 #[test]
-fn under_the_fail_of_the_mock_board_nobody_is_told_to_put_the_own_board_aside() {
+fn the_verdict_on_the_mock_board_is_not_shown_as_that_of_the_board_in_the_lane() {
     let shift = format!("[shift]\ngood = \"{}\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]", SERIALS[0]);
     let station = Station::private(1).where_instead("plan.toml", "[tables]", &shift);
     let serving = station.serve();
     let here = serving.here();
     scan(&here, SERIALS[0], "1");
     run_of(&here, "1", "pass", "en");
-    let page = |language: &str| here.get("/").with("accept-language", language).send().text();
+    let lane = |language: &str| {
+        let page = here.get("/").with("accept-language", language).send().text();
+        let (_, lane) = page.split_once("id=\"lane-1\"").unwrap();
+        lane.split_once("</article>").unwrap().0.to_owned()
+    };
     // Now and then a fault is drawn that goes unfound.
     until("a FAIL of the mock board", || {
-        let is_there = page("en").contains("lane fail");
+        let is_there = lane("en").contains("last: FAIL HR:MOCK:1");
         if !is_there {
             here.post("/scan", &[("text", "HR:MOCK"), ("lane", "1")]).send();
         }
         is_there
     });
+    assert!(here.get("/").send().text().contains("lane ready"));
     for (language, said, aside) in [
-        ("en", "the mock board failed, as it must", "put the board aside"),
-        ("de", "Mock-Platine SCHLECHT, wie erwartet", "Platine aussondern"),
-        ("zh", "模拟板不合格，符合要求", "将板卡隔离"),
+        ("en", "scan its label", "put the board aside"),
+        ("de", "zuletzt: SCHLECHT HR:MOCK:1", "Platine aussondern"),
+        ("zh", "上一块板：不合格 HR:MOCK:1", "将板卡隔离"),
     ] {
-        let page = page(language);
-        let (_, lane) = page.split_once("id=\"lane-1\"").unwrap();
-        let (lane, _) = lane.split_once("</article>").unwrap();
+        let lane = lane(language);
         assert!(lane.contains(said) && !lane.contains(aside), "{lane}");
+    }
+}
+
+/// Its word and its colour are those of every PASS.
+#[test]
+fn a_lane_says_of_a_board_that_a_program_plays_that_no_hardware_was_tested() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let here = serving.here();
+    scan(&here, SERIALS[0], "1");
+    here.get("/").until("lane pass");
+    for (language, said) in
+        [("en", "no hardware was tested"), ("de", "keine Hardware geprüft"), ("zh", "未测试硬件")]
+    {
+        let page = here.get("/").with("accept-language", language).send().text();
+        let (_, lane) = page.split_once("id=\"lane-1\"").unwrap();
+        assert!(lane.split_once("</article>").unwrap().0.contains(said), "{lane}");
     }
 }
 

@@ -1,0 +1,100 @@
+//! A serial number that waits for the next board that is plugged in.
+
+use std::time::Duration;
+
+use super::{Effect, Event, Floor, ScanError, ScanOutcome};
+use crate::said::{Said, Saying};
+
+/// How long a serial number waits for a lane.
+const WAIT: Duration = Duration::from_secs(60);
+
+/// A serial number that waits for a lane.
+#[derive(Clone, Debug)]
+pub(super) struct Pending {
+    pub(super) serial: String,
+    /// Who scanned it.
+    operator: String,
+    since: Duration,
+}
+
+impl Pending {
+    fn is_fresh(&self, now: Duration) -> bool {
+        now.saturating_sub(self.since) <= WAIT
+    }
+}
+
+impl Floor {
+    /// The serial number that waits for a lane at the time `now`.
+    #[must_use]
+    pub fn pending(&self, now: Duration) -> Option<&str> {
+        self.pending.as_ref().filter(|pending| pending.is_fresh(now)).map(|pending| pending.serial.as_str())
+    }
+
+    /// Takes which boards came or went, all seen at one look at the time `now`; returns each of these lanes with what is to
+    /// be done there. A serial number that waits belongs to the next board that is plugged in: it goes to that board's lane,
+    /// or to none. Of boards that came together nobody knows which was first.
+    pub fn looked(&mut self, changes: &[(usize, bool)], now: Duration) -> Vec<(usize, Option<Effect>)> {
+        let (mut effects, mut came) = (Vec::new(), Vec::new());
+        for &(place, is_present) in changes {
+            let Some(lane) = self.lanes.get_mut(place) else { continue };
+            let is_new = is_present && !lane.is_present();
+            let effect = lane.take(Event::Present(is_present)).ok().flatten();
+            // A board that starts a run by itself has its serial number already.
+            if is_new && effect.is_none() {
+                came.push(place);
+            }
+            effects.push((place, effect));
+        }
+        if !came.is_empty()
+            && let Some(pending) = self.pending.take().filter(|pending| pending.is_fresh(now))
+            && let Some(begun) = self.plugged(&came, pending)
+            && let Some((_, effect)) = effects.iter_mut().find(|(place, _)| came.first() == Some(place))
+        {
+            *effect = Some(begun);
+        }
+        effects
+    }
+
+    /// Gives the only lane into which a board came the serial number that waited. If that cannot be, the lanes say why.
+    fn plugged(&mut self, came: &[usize], Pending { serial, operator, .. }: Pending) -> Option<Effect> {
+        let given = match came {
+            &[lane] => self.give(lane, &serial, &operator).map(|answer| (lane, answer.effect)),
+            _ => {
+                let lanes = came.iter().map(|&lane| self.name(lane)).collect::<Vec<_>>().join(", ");
+                Err(ScanError::Together { lanes })
+            }
+        };
+        match given {
+            // Some lanes are started by plugging the board in.
+            Ok((lane, effect)) => {
+                effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
+            }
+            Err(refused) => {
+                let why = Said::of(&refused);
+                for &lane in came {
+                    let missed = Saying::NotGiven { serial: serial.clone(), why: why.clone() };
+                    self.lanes.get_mut(lane)?.miss(missed.into());
+                }
+                None
+            }
+        }
+    }
+
+    /// Keeps the serial number for the next lane into which a board is plugged.
+    pub(super) fn keep(
+        &mut self,
+        serial: String,
+        operator: &str,
+        now: Duration,
+    ) -> Result<ScanOutcome, ScanError> {
+        let all: Vec<usize> = (0..self.rules.len()).collect();
+        let accepted = self.read(&all, &serial, operator)?;
+        self.refuse_elsewhere(usize::MAX, &accepted)?;
+        let said = match self.pending(now).map(str::to_owned) {
+            Some(other) => Saying::WaitsInstead { serial: serial.clone(), other },
+            None => Saying::WaitsForPlug { serial: serial.clone() },
+        };
+        self.pending = Some(Pending { serial, operator: operator.to_owned(), since: now });
+        Ok(ScanOutcome { lane: None, effect: None, said: said.into() })
+    }
+}
