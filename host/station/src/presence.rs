@@ -8,6 +8,8 @@ use halfrow::target::Target;
 
 /// Where Linux lists USB devices.
 pub(crate) const USB: &str = "/sys/bus/usb/devices";
+/// Where Linux lists serial ports.
+pub(crate) const PORTS: &str = "/sys/class/tty";
 /// FTDI's USB vendor id.
 const FTDI: &str = "0403";
 /// How long a board must be away before it counts as gone.
@@ -49,8 +51,20 @@ pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
     }
 }
 
+/// Whether both names are of one board, as far as they and what is plugged in say. A chip that `usb:` names has one board,
+/// and `ports` says which serial ports are of that chip, too. Two ports of a chip may have a board each.
+pub(crate) fn is_same(one: &Target, other: &Target, devices: &Path, ports: &Path) -> bool {
+    match (one.kind.as_str(), other.kind.as_str()) {
+        ("usb", "serial") => place(one, devices).is_some_and(|chip| Some(chip) == chip_of(other, ports)),
+        ("serial", "usb") => is_same(other, one, devices, ports),
+        (kind, of_other) => {
+            kind == of_other && place(one, devices).is_some_and(|one| Some(one) == place(other, devices))
+        }
+    }
+}
+
 /// The place of a board that has one. Several names of a device that is plugged in lead to the same place.
-pub(crate) fn place(board: &Target, devices: &Path) -> Option<PathBuf> {
+fn place(board: &Target, devices: &Path) -> Option<PathBuf> {
     let address = board.address.as_deref()?;
     let found = match board.kind.as_str() {
         "serial" => fs::canonicalize(address).ok(),
@@ -61,6 +75,14 @@ pub(crate) fn place(board: &Target, devices: &Path) -> Option<PathBuf> {
         _ => None,
     };
     Some(found.unwrap_or_else(|| address.into()))
+}
+
+/// The place of the USB device that a serial port is of, if it is plugged in and of one.
+fn chip_of(port: &Target, ports: &Path) -> Option<PathBuf> {
+    let port = fs::canonicalize(port.address.as_deref()?).ok()?;
+    let interface = fs::canonicalize(ports.join(port.file_name()?).join("device")).ok()?;
+    let device = interface.ancestors().find(|folder| folder.join("idVendor").is_file())?;
+    Some(device.file_name()?.into())
 }
 
 /// Whether a board is present. Short absences while its system starts are ignored.
@@ -125,8 +147,8 @@ mod tests {
         assert!(seen("usb:1-2.3") && seen("usb:FT3XYZ") && seen("usb:2-1"));
         assert!(!seen("usb:1-1") && !seen("usb:MOUSE") && !seen("usb:1-2"));
         let is_same = |one: &str, other: &str| {
-            let [one, other] = [one, other].map(|name| place(&name.parse().unwrap(), devices.path()));
-            one == other
+            let [one, other] = [one, other].map(|name| name.parse().unwrap());
+            is_same(&one, &other, devices.path(), devices.path())
         };
         assert!(is_same("usb:1-2.3", "usb:FT3XYZ") && is_same("tcp:bench:1", "tcp:bench:1,baud=9600"));
         assert!(!is_same("usb:1-2.3", "usb:2-1") && !is_same("tcp:bench:1", "tcp:bench:2"));
@@ -135,5 +157,37 @@ mod tests {
         assert!(!seen(&target));
         fs::write(&port, "").unwrap();
         assert!(seen(&target) && seen("mock") && seen("tcp:bench:3001"));
+    }
+
+    /// As Linux lists an FT2232H: the device, its two interfaces, and the port of each.
+    #[test]
+    fn a_chip_is_the_same_by_usb_and_by_its_serial_ports() {
+        let folder = tempfile::tempdir().unwrap();
+        let [devices, ports, files] = ["devices", "ports", "dev"].map(|name| folder.path().join(name));
+        for (number, place) in [("0", "1-2.3"), ("1", "1-2.3"), ("2", "1-4")] {
+            let device = devices.join(place);
+            let name = format!("ttyUSB{number}");
+            let interface = device.join(format!("{place}:1.{number}")).join(&name);
+            for folder in [&interface, &ports.join(&name), &files] {
+                fs::create_dir_all(folder).unwrap();
+            }
+            fs::write(device.join("idVendor"), "0403\n").unwrap();
+            fs::write(device.join("serial"), format!("FT{place}\n")).unwrap();
+            std::os::unix::fs::symlink(interface, ports.join(&name).join("device")).unwrap();
+            fs::write(files.join(name), "").unwrap();
+        }
+        std::os::unix::fs::symlink(files.join("ttyUSB1"), files.join("by-path")).unwrap();
+        let port = |name: &str| format!("serial:{}", files.join(name).display());
+        let same = |one: &str, other: &str| {
+            let [one, other] = [one, other].map(|name| name.parse().unwrap());
+            is_same(&one, &other, &devices, &ports)
+        };
+        for usb in ["usb:1-2.3", "usb:FT1-2.3"] {
+            let of_ports = ["ttyUSB0", "by-path", "ttyUSB2", "none"].map(|name| same(usb, &port(name)));
+            assert_eq!(of_ports, [true, true, false, false], "{usb}");
+            assert!(same(&port("by-path"), usb));
+        }
+        assert!(same(&port("by-path"), &port("ttyUSB1")));
+        assert!(!same(&port("ttyUSB0"), &port("ttyUSB1")), "each may have a board");
     }
 }

@@ -23,7 +23,7 @@ use halfrow::target::Target;
 pub use error::LabgridError;
 pub use held::AcquiredPlace;
 
-use crate::presence::{self, USB};
+use crate::presence::{self, PORTS, USB};
 use crate::process_group::without_secrets;
 use crate::said::Said;
 
@@ -53,13 +53,12 @@ pub enum LaneBoard {
 }
 
 impl LaneBoard {
-    /// Whether both are the same board, as far as names of one kind and what is plugged in say.
+    /// Whether both are the same board, as far as their names and what is plugged in say.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Own(one), Self::Own(other)) => {
-                let place = |board| presence::place(board, Path::new(USB));
-                one.kind == other.kind && place(one).is_some_and(|one| Some(one) == place(other))
+                presence::is_same(one, other, Path::new(USB), Path::new(PORTS))
             }
             (Self::Lent(one), Self::Lent(other)) => one.name == other.name,
             _ => false,
