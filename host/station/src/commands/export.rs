@@ -14,13 +14,16 @@ use crate::exit::Exit;
 use crate::export::{self, ExportError, Format, Table};
 use crate::history::runs::{Filter, MOST, page};
 use crate::history::unit::run_of;
+use crate::record::Record;
+use crate::said::Said;
 use crate::store::Snapshot;
 
 /// Write runs for other programs
 ///
 /// One run goes to stdout, or to the file of `--to`. Without a run, all runs that pass the filters are written: `csv` into
 /// the file of `--to`, and each other format into a file for each run in the folder of `--to`. Nothing is overwritten. Runs
-/// that are open are left out.
+/// that are open are left out. So is a run whose record is damaged: it is named, all others are written, and the exit code
+/// is 3.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The run, as `halfrow-station history` names it [default: all that pass the filters]
@@ -61,47 +64,73 @@ fn one(of: &Snapshot, run: &str, format: Format, to: Option<&Path>) -> Result<Ex
     Ok(Exit::Pass)
 }
 
-/// Writes all runs that pass the filter, and prints how many there are.
+/// Writes all runs that pass the filter and can be read, and prints how many there are.
 fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit, Failure> {
-    let count = if format == Format::Csv {
+    let Each { written, lost } = if format == Format::Csv {
         let aside = Aside::written(to, false, |_| Ok(())).map_err(unwritten)?;
         let mut table = Table::begin(aside)?;
-        let count = each(of, filter, |_, hash| Ok(table.add(&export::record(of, hash)?.0)?))?;
+        let each = each(of, filter, |_, record, _| Ok(table.add(&record)?))?;
         table.end().put_in_place().map_err(unwritten)?;
-        count
+        each
     } else {
         fs::create_dir_all(to).map_err(|source| Failure::call(NoFolder { path: to.to_owned(), source }))?;
-        each(of, filter, |run, hash| {
-            let bytes = export::run(of, hash, format)?;
+        each(of, filter, |run, record, bytes| {
+            let bytes = export::written(&record, bytes, format)?;
             let path = to.join(format!("{run}{}", format.ending()));
             write_aside(&path, false, |file| file.write_all(&bytes)).map_err(unwritten)
         })?
     };
-    let (runs, are) = (words::count(count, "run"), verb(count, "are"));
-    print(&format!("{runs} {are} in {}", to.display()))
+    let (runs, are) = (words::count(written, "run"), verb(written, "are"));
+    let exit = print(&format!("{runs} {are} in {}", to.display()))?;
+    if lost.is_empty() { Ok(exit) } else { Err(Failure::error(RunsLost { runs: lost.join(", ") })) }
 }
 
-/// Calls `write` for each run that passes the filter, newest first, with its id and its record's hash; returns how
-/// many there are.
+/// What became of the runs that are exported.
+#[derive(Default)]
+struct Each {
+    written: usize,
+    /// Those whose records are damaged.
+    lost: Vec<String>,
+}
+
+/// Calls `write` for each run that passes the filter, newest first, with its id, its record and the record's bytes.
 fn each(
     of: &Snapshot,
     filter: &Filter,
-    mut write: impl FnMut(&str, &str) -> Result<(), Failure>,
-) -> Result<usize, Failure> {
-    let (mut count, mut after) = (0, None);
+    mut write: impl FnMut(&str, Record, Vec<u8>) -> Result<(), Failure>,
+) -> Result<Each, Failure> {
+    let (mut each, mut after) = (Each::default(), None);
     loop {
         let page = page(of, filter, after.as_ref(), MOST)?;
         for run in &page.runs {
-            if let Some(hash) = &run.record_sha256 {
-                write(&run.id, hash)?;
-                count += 1;
+            let Some(hash) = &run.record_sha256 else { continue };
+            match export::record(of, hash) {
+                Ok((record, bytes)) => {
+                    write(&run.id, record, bytes)?;
+                    each.written += 1;
+                }
+                Err(ExportError::Store(error)) if error.is_of_record() => {
+                    tracing::warn!("the run {} is left out: {}", run.id, Said::of(&error));
+                    each.lost.push(run.id.clone());
+                }
+                Err(error) => return Err(error.into()),
             }
         }
         after = page.next;
         if after.is_none() {
-            return Ok(count);
+            return Ok(each);
         }
     }
+}
+
+/// Runs are missing in what was written, because their records are gone or damaged.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "these runs are missing there, because their records are gone or damaged: {runs}; put the records back from a copy of \
+     the folder, as `halfrow-station check` says, and export these runs again"
+)]
+pub(super) struct RunsLost {
+    pub(super) runs: String,
 }
 
 impl From<ExportError> for Failure {

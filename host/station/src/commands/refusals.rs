@@ -4,7 +4,7 @@ use halfrow::result::codes;
 
 use super::board::{NoBoard, NoBoardKind, NoKind, OtherPlace, SharedAlready};
 use super::evidence::{EvidenceLost, EvidenceRemoved, NoSuchRun};
-use super::export::{NoFolder, Taken};
+use super::export::{NoFolder, RunsLost, Taken};
 use super::job::{NoJob, NoWord};
 use super::lanes::EngineEnded;
 use super::looking::NoRange;
@@ -71,6 +71,8 @@ codes::codes! {
     EvidenceLost [names, run] => "evidence-lost"
     ;
     EvidenceRemoved [names, run] => "evidence-removed"
+    ;
+    RunsLost [runs] => "export-incomplete"
     ;
     NoFolder [path] => "output-folder-unusable"
     ;

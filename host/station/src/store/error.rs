@@ -276,6 +276,12 @@ impl StoreError {
         matches!(self, Self::Plant { .. } | Self::Certificate(_))
     }
 
+    /// Whether a record is gone or damaged, and the rest of the store may be well.
+    #[must_use]
+    pub(crate) const fn is_of_record(&self) -> bool {
+        matches!(self, Self::Blob(_) | Self::Record(_) | Self::NoRecord { .. })
+    }
+
     /// Whether the plant can never store what it was given.
     #[must_use]
     pub(super) fn is_of_content(&self) -> bool {

@@ -104,6 +104,30 @@ fn stdout_has_the_same_bytes_as_a_file() {
     }
 }
 
+/// Whoever exports must learn which runs are missing, and has all others.
+#[test]
+fn an_export_names_the_runs_whose_records_are_damaged_and_has_all_others() {
+    for format in ["csv", "record", "junit", "openhtf"] {
+        let (made, place) = (made(), tempfile::tempdir().unwrap());
+        let page = page(&made.now(), &Filter::default(), None, 100).unwrap();
+        let runs: Vec<_> =
+            page.runs.into_iter().filter_map(|run| Some((run.id, run.record_sha256?))).collect();
+        fs::write(made.folder().blobs().path(&runs[1].1), "damaged").unwrap();
+        fs::remove_file(made.folder().blobs().path(&runs[3].1)).unwrap();
+        let to = place.path().join("out");
+        let (code, said, complained) =
+            did(&made, &["export", "--format", format, "--to", to.to_str().unwrap()]);
+        assert!(code == 3 && said.starts_with("3 runs are in "), "{format}: {code} {said} {complained}");
+        let of_csv = || fs::read_to_string(&to).unwrap();
+        let of_folder = || files(&to).iter().map(|path| path.display().to_string() + "\n").collect();
+        let there: String = if format == "csv" { of_csv() } else { of_folder() };
+        for (place, (run, _)) in runs.iter().enumerate() {
+            let is_lost = place == 1 || place == 3;
+            assert_eq!((complained.contains(run), there.contains(run)), (is_lost, !is_lost), "{complained}");
+        }
+    }
+}
+
 #[test]
 fn nothing_is_overwritten_by_an_export() {
     let made = made();
