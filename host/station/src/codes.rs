@@ -152,6 +152,7 @@ codes::codes! {
         Closed [host, status] => "sink-closed",
         Unknown [host, said] => "sink-knows-no-user",
         Rejected [host, status, answer] => "sink-rejects",
+        Dropped [host, bytes] => "sink-ends-connection",
         Unconfirmed [host, seconds] => "sink-unconfirmed",
         Unwritten => "sink-file-not-written",
         = Certificate,

@@ -143,10 +143,23 @@ impl EventSink {
 
     /// Publishes an event, and waits until the broker has confirmed it.
     fn tell(&mut self, topic: &str, event: Vec<u8>) -> Result<(), SinkError> {
-        let (client, mut connection) = self
-            .connected
-            .take()
-            .unwrap_or_else(|| Client::builder(self.options.clone()).capacity(4).build());
+        if let Some(kept) = self.connected.take() {
+            match self.publish(kept, topic, event.clone()) {
+                // It may have ended long ago.
+                Err(SinkError::Dropped { .. } | SinkError::Unreached { .. }) => {}
+                told => return told,
+            }
+        }
+        self.publish(Client::builder(self.options.clone()).capacity(4).build(), topic, event)
+    }
+
+    fn publish(
+        &mut self,
+        (client, mut connection): (Client, Connection),
+        topic: &str,
+        event: Vec<u8>,
+    ) -> Result<(), SinkError> {
+        let (bytes, mut is_in) = (event.len(), false);
         let how = PublishOptions::new(QoS::AtLeastOnce);
         let unreached =
             |error: ClientError| SinkError::Unreached { host: self.host.clone(), source: error.into() };
@@ -157,12 +170,19 @@ impl EventSink {
             let Ok(happened) = connection.recv_timeout(left) else {
                 return Err(SinkError::Unconfirmed { host: self.host.clone(), seconds: CONFIRMED.as_secs() });
             };
-            // Only one is under way at a time.
-            if let Event::Incoming(Packet::PubAck(_)) =
-                happened.map_err(|error| refused(&self.host, error))?
-            {
-                self.connected = Some((client, connection));
-                return Ok(());
+            match happened {
+                Ok(Event::Incoming(Packet::ConnAck(_))) => is_in = true,
+                // Only one is under way at a time.
+                Ok(Event::Incoming(Packet::PubAck(_))) => {
+                    self.connected = Some((client, connection));
+                    return Ok(());
+                }
+                Ok(_) => {}
+                Err(error) if is_in => {
+                    let (host, source) = (self.host.clone(), error.into());
+                    return Err(SinkError::Dropped { host, bytes, source });
+                }
+                Err(error) => return Err(refused(&self.host, error)),
             }
         }
     }

@@ -122,6 +122,18 @@ pub(crate) enum SinkError {
         /// What it says.
         answer: String,
     },
+    /// The broker let the station in, and ended the connection when it was given this event.
+    #[error(
+        "{host} ended the connection over an event of {bytes} bytes; if it takes others, look at how long a message may be there"
+    )]
+    Dropped {
+        /// The other side.
+        host: String,
+        /// How long the event is.
+        bytes: usize,
+        /// How the connection ended.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// The broker did not confirm an event in time.
     #[error("{host} has not confirmed an event within {seconds} s; look at the broker")]
     Unconfirmed {
@@ -154,6 +166,7 @@ impl From<SinkError> for Undelivered {
             | SinkError::Unknown { .. }
             | SinkError::Unconfirmed { .. } => Self::Away(said),
             SinkError::Busy { status: 409 | 500, .. }
+            | SinkError::Dropped { .. }
             | SinkError::Unwritten(_)
             | SinkError::Unread { .. }
             | SinkError::Export(_) => Self::NotNow(said),

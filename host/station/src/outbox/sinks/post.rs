@@ -1,5 +1,6 @@
 //! A web server as a sink: each run and each waiver is posted, with an idempotency key.
 
+use std::collections::HashMap;
 use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -20,6 +21,8 @@ use crate::trust;
 
 /// How long a request may take, its answer included.
 const DEADLINE: Duration = Duration::from_secs(30);
+/// How often in a row a try may be said to be in progress: for more than an hour, as retries follow each other.
+const MOST_IN_PROGRESS: u32 = 20;
 /// How many characters of an answer are reported.
 const TOLD: usize = 500;
 /// The header by which a server knows what it has been given before (draft-ietf-httpapi-idempotency-key-header).
@@ -35,6 +38,8 @@ pub(super) struct PostSink {
     /// What lets the station in.
     token: Option<String>,
     agent: Agent,
+    /// How often in a row it said of a document, by its id, that an earlier try is in progress.
+    in_progress: HashMap<String, u32>,
 }
 
 impl PostSink {
@@ -64,10 +69,18 @@ impl PostSink {
             config = config.tls_config(tls.build());
         }
         let (url, host) = (address.url.clone(), address.host.clone());
-        Ok(Self { name, url, host, format, token, agent: config.build().new_agent() })
+        Ok(Self {
+            name,
+            url,
+            host,
+            format,
+            token,
+            agent: config.build().new_agent(),
+            in_progress: HashMap::new(),
+        })
     }
 
-    fn post(&self, Letter { id, media, bytes, .. }: &Letter) -> Result<(), SinkError> {
+    fn post(&mut self, Letter { id, media, bytes, .. }: &Letter) -> Result<(), SinkError> {
         let mut request = self
             .agent
             .post(&self.url)
@@ -79,17 +92,23 @@ impl PostSink {
         let answer = request.send(bytes.as_slice());
         let unconnected = |error: ureq::Error| SinkError::unconnected(&self.host, error.into());
         let (parts, body) = answer.map_err(unconnected)?.into_parts();
-        self.judged(parts.status, body)
+        let in_progress = self.in_progress.remove(id).unwrap_or(0);
+        if parts.status == StatusCode::CONFLICT {
+            self.in_progress.insert(id.clone(), in_progress.saturating_add(1));
+        }
+        self.judged(parts.status, body, in_progress)
     }
 
     /// What an answer means: the server has this, takes nothing for now, takes nothing at all, or does not take this.
-    fn judged(&self, answered: StatusCode, body: Body) -> Result<(), SinkError> {
+    /// `in_progress` counts the answers before it that said only that an earlier try is in progress.
+    fn judged(&self, answered: StatusCode, body: Body, in_progress: u32) -> Result<(), SinkError> {
         let (host, status) = (self.host.clone(), answered.as_u16());
         match status {
             200..=299 => Ok(()),
-            // 409: it is still working on the same key (draft-ietf-httpapi-idempotency-key-header-07, section 2.7), as
-            // after DEADLINE.
-            408 | 409 | 425 | 429 | 500..=599 => Err(SinkError::Busy { host, status }),
+            // It is still working on the same key (draft-ietf-httpapi-idempotency-key-header-07, section 2.7), as after
+            // DEADLINE.
+            409 if in_progress < MOST_IN_PROGRESS => Err(SinkError::Busy { host, status }),
+            408 | 425 | 429 | 500..=599 => Err(SinkError::Busy { host, status }),
             300..=399 | 401 | 403 | 407 => Err(SinkError::Closed { host, status }),
             _ => Err(SinkError::Rejected { host, status, answer: beginning(body, self.token.as_deref()) }),
         }
@@ -150,5 +169,55 @@ impl Sink for PostSink {
     fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered> {
         let Some(letter) = letter(parcel, self.format).map_err(Undelivered::from)? else { return Ok(()) };
         Ok(self.post(&letter)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{BufRead as _, BufReader, Write as _};
+    use std::net::TcpListener;
+    use std::thread;
+
+    use super::*;
+    use crate::record::tests::pass;
+
+    /// No try is in progress for so long: the server means something else, and somebody has to look at it.
+    #[test]
+    fn what_is_said_to_be_in_progress_for_an_hour_waits_for_a_person() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let port = listener.local_addr().unwrap().port();
+        thread::spawn(move || {
+            for mut client in listener.incoming().map(Result::unwrap) {
+                let mut reader = BufReader::new(client.try_clone().unwrap());
+                let head: Vec<_> =
+                    reader.by_ref().lines().map(Result::unwrap).take_while(|line| !line.is_empty()).collect();
+                let length = head
+                    .iter()
+                    .find_map(|line| line.to_lowercase().strip_prefix("content-length: ")?.parse().ok());
+                reader.read_exact(&mut vec![0; length.unwrap()]).unwrap();
+                let answer =
+                    "HTTP/1.1 409 Conflict\r\ncontent-length: 10\r\nconnection: close\r\n\r\nlot closed";
+                client.write_all(answer.as_bytes()).unwrap();
+            }
+        });
+        let url = format!("http://127.0.0.1:{port}/");
+        let (host, path) = ("127.0.0.1".to_owned(), "/".to_owned());
+        let address = SinkAddress { url, host, port, path, is_protected: false, ca: None };
+        let mut sink = PostSink::new("mes".to_owned(), &address, Format::Record, None, None).unwrap();
+        let mut take = |id: &str| {
+            let mut record = pass();
+            record.run.id = id.to_owned();
+            let (record, text, sha256) = (Box::new(record), "{}".to_owned(), String::new());
+            sink.take(&Parcel::Run { record, text, sha256 }).unwrap_err()
+        };
+        for _ in 0..MOST_IN_PROGRESS {
+            assert!(matches!(take("a"), Undelivered::NotNow(_)));
+        }
+        let refused = take("a");
+        assert!(
+            matches!(&refused, Undelivered::Refused(said) if said.message.contains("lot closed")),
+            "{refused:?}"
+        );
+        assert!(matches!(take("b"), Undelivered::NotNow(_)), "another one");
     }
 }

@@ -13,7 +13,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::send;
-use crate::common::listening;
+use crate::common::{listening, query};
 use crate::history::made::{End, Made, Run};
 use crate::plant::link::certificates;
 
@@ -34,12 +34,17 @@ const LONGEST: &str = "30";
 impl Broker {
     /// A running broker, with the certificate in `certified` if there is one.
     fn start(certified: Option<&Path>) -> Self {
+        Self::with(certified, "")
+    }
+
+    /// The same with more settings.
+    fn with(certified: Option<&Path>, more: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name).display().to_string();
         let made =
             Command::new("mosquitto_passwd").args(["-b", "-c", &path("users"), "station", PASSWORD]).output();
         assert!(made.unwrap().status.success());
-        let mut text = format!("allow_anonymous false\npassword_file {}\nuser root\n", path("users"));
+        let mut text = format!("allow_anonymous false\npassword_file {}\nuser root\n{more}", path("users"));
         let mut trusted = Vec::new();
         if let Some(place) = certified {
             let at = |name: &str| place.join(name).display().to_string();
@@ -184,6 +189,26 @@ fn a_broker_whose_certificate_nobody_signed_who_is_trusted_is_told_as_that() {
     assert!(refused.said.starts_with("1 sent, 3 not") && refused.said.contains(told), "{refused:?}");
 }
 
+/// The broker is there, and takes what comes after.
+#[test]
+fn an_event_that_is_too_long_for_a_broker_keeps_no_other_one_waiting() {
+    let broker = Broker::with(None, "max_packet_size 20000\n");
+    let folder = station();
+    // The waiver is the first that is sent.
+    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
+    database.execute("UPDATE waiver SET id = '0' || substr(id, 2)", []).unwrap();
+    database
+        .execute("UPDATE outbox SET subject = '0' || substr(subject, 2) WHERE kind = 'waiver'", [])
+        .unwrap();
+    let waiver: String = database.query_row("SELECT id FROM waiver", [], |row| row.get(0)).unwrap();
+    assert!(waiver.starts_with('0'));
+    drop(database);
+    let sent = send(folder.path(), &broker.sink(folder.path(), "mqtt", PASSWORD, ""));
+    assert!(sent.said.starts_with("3 sent, 1 not"), "{sent:?}");
+    assert!(sent.said.contains("ended the connection over an event of 200"), "{sent:?}");
+    assert_eq!(query(folder.path(), "SELECT kind FROM outbox WHERE done_ms IS NULL"), ["waiver"]);
+}
+
 /// The broker accepts the station, and is gone before it confirms an event.
 #[test]
 fn an_event_that_no_broker_has_confirmed_is_tried_again() {
@@ -201,5 +226,6 @@ fn an_event_that_no_broker_has_confirmed_is_tried_again() {
     });
     let sent =
         send(folder.path(), &format!("[[sink]]\nname = \"wall\"\nmqtt = \"mqtt://localhost:{port}/x\"\n"));
-    assert!(sent.said.starts_with("1 sent, 3 not"), "{sent:?}");
+    // Neither event, while the old run and the line of the audit make none.
+    assert!(sent.said.starts_with("2 sent, 2 not"), "{sent:?}");
 }
