@@ -10,6 +10,8 @@ use halfrow::files::written_aside::{self, Aside, WriteAsideError};
 use halfrow::result::sha256;
 use nix::fcntl::OFlag;
 
+use crate::clock;
+
 /// Evidence that cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum BlobError {
@@ -87,7 +89,8 @@ impl Blobs {
         self.folder.join(hash.get(..2).unwrap_or("00")).join(hash)
     }
 
-    /// Writes `bytes` and syncs them and their name to the disk; returns their hash. A damaged file of that name is replaced.
+    /// Writes `bytes` and syncs them and their name to the disk; returns their hash. A damaged file of that name is replaced, and so
+    /// is a link; a folder is put aside.
     ///
     /// # Errors
     /// [`BlobError`]; no partial file remains.
@@ -104,8 +107,12 @@ impl Blobs {
         match written.and_then(Aside::rename_into_place) {
             // A run that ended early may have written it, without syncing its name. What no row names is pruned by its age, and
             // for this run no row names it yet.
-            Err(WriteAsideError::Exists { .. }) => {
-                if self.get(&hash).is_err() || dated(&path).is_err() {
+            Err(
+                WriteAsideError::Exists { .. }
+                | WriteAsideError::Link { .. }
+                | WriteAsideError::NotAFile { .. },
+            ) => {
+                if is_link(&path) || self.get(&hash).is_err() || dated(&path).is_err() {
                     replace(&path, bytes)?;
                 }
             }
@@ -173,6 +180,11 @@ impl Blobs {
     }
 }
 
+/// Whether this is a link, whose file anybody may remove.
+fn is_link(path: &Path) -> bool {
+    path.symlink_metadata().is_ok_and(|about| about.is_symlink())
+}
+
 /// Gives a file the present time.
 fn dated(path: &Path) -> io::Result<()> {
     File::options().append(true).open(path)?.set_modified(SystemTime::now())
@@ -181,9 +193,21 @@ fn dated(path: &Path) -> io::Result<()> {
 /// Puts evidence in the place of a file that is damaged or somebody else's: as long as that stayed there, no run with this
 /// evidence could be saved.
 fn replace(path: &Path, bytes: &[u8]) -> Result<(), BlobError> {
-    tracing::warn!("{} was damaged, or is not the station's own; it is written anew", path.display());
-    // What replaces a file gets its mode, which may be why it could not be read.
-    let _ = fs::remove_file(path);
+    let is_folder = fs::symlink_metadata(path).is_ok_and(|about| about.is_dir());
+    if is_folder {
+        // Whatever is in it is somebody's.
+        let aside = path.with_extension(format!("folder-{}", clock::now_ms()));
+        fs::rename(path, &aside).map_err(|source| BlobError::Folder { path: path.to_owned(), source })?;
+        tracing::warn!(
+            "{} was a folder and is {} now; the evidence is written anew",
+            path.display(),
+            aside.display()
+        );
+    } else {
+        tracing::warn!("{} was damaged, or is not the station's own; it is written anew", path.display());
+        // What replaces a file gets its mode, which may be why it could not be read.
+        let _ = fs::remove_file(path);
+    }
     Ok(Aside::written(path, true, |file| file.write_all(bytes)).and_then(Aside::rename_into_place)?)
 }
 
@@ -237,5 +261,28 @@ mod tests {
         assert!(matches!(blobs.get(&hash), Err(BlobError::Damaged { .. })));
         assert_eq!(blobs.put(b"abc").unwrap(), hash, "damage is not taken for evidence");
         assert_eq!(blobs.get(&hash).unwrap(), b"abc");
+    }
+
+    #[test]
+    fn evidence_is_written_where_a_folder_or_a_link_has_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let blobs = Blobs::new(folder.path().join("blobs"));
+        let path = blobs.path(&blobs.put(b"abc").unwrap());
+        let other = folder.path().join("other");
+        fs::rename(&path, &other).unwrap();
+        for to in [other.as_path(), "nowhere".as_ref()] {
+            std::os::unix::fs::symlink(to, &path).unwrap();
+            blobs.put(b"abc").unwrap();
+            assert!(path.symlink_metadata().unwrap().is_file(), "{}", to.display());
+            fs::remove_file(&path).unwrap();
+        }
+        assert_eq!(fs::read(other).unwrap(), b"abc", "it is somebody else's");
+        fs::create_dir(&path).unwrap();
+        fs::write(path.join("mine"), "kept").unwrap();
+        assert_eq!(blobs.get(&blobs.put(b"abc").unwrap()).unwrap(), b"abc");
+        let mut there = fs::read_dir(path.parent().unwrap()).unwrap().map(|entry| entry.unwrap().path());
+        let aside = there.find(|found| found.is_dir()).unwrap();
+        assert_eq!(fs::read_to_string(aside.join("mine")).unwrap(), "kept");
+        assert_eq!(blobs.all().unwrap().len(), 1, "what was put aside is no evidence");
     }
 }
