@@ -56,7 +56,7 @@ pub(super) enum EventKind {
     },
 }
 
-/// An event with its number. Numbers follow each other without a gap.
+/// An event with its number. A page that misses a number takes everything anew.
 #[derive(Clone, Debug)]
 pub(super) struct Event {
     pub(super) id: u64,
@@ -93,18 +93,21 @@ impl Live {
     /// # Errors
     /// When the system has no thread for it.
     pub(super) fn start(engine: &Arc<Engine>) -> io::Result<Arc<Self>> {
-        let (now, pages) = (Now { lanes: engine.lanes(), ..Now::default() }, broadcast::Sender::new(BACKLOG));
-        let live = Arc::new(Self {
-            now: Mutex::new(now),
-            pages,
+        let live = Arc::new(Self::of(engine.lanes()));
+        let (heard, engine, told) = (engine.listen(), Arc::clone(engine), Arc::downgrade(&live));
+        thread::Builder::new().name("live".to_owned()).spawn(move || listen(&engine, heard, &told))?;
+        Ok(live)
+    }
+
+    fn of(lanes: Vec<LaneState>) -> Self {
+        Self {
+            now: Mutex::new(Now { lanes, ..Now::default() }),
+            pages: broadcast::Sender::new(BACKLOG),
             asked: Mutex::default(),
             numbers: AtomicU64::new(0),
             begun: Instant::now(),
             start: clock::now_ms().to_string(),
-        });
-        let (heard, engine, told) = (engine.listen(), Arc::clone(engine), Arc::downgrade(&live));
-        thread::Builder::new().name("live".to_owned()).spawn(move || listen(&engine, heard, &told))?;
-        Ok(live)
+        }
     }
 
     /// Everything as it is, and the events from then on.
@@ -167,6 +170,16 @@ impl Live {
         }
     }
 
+    /// News of the engine were missed. Every page finds a number missing, and takes everything anew; whoever waits for an
+    /// answer is told that there is none.
+    fn missed(&self) {
+        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        now.id += 1;
+        now.doing.clear();
+        drop(now);
+        self.asked.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    }
+
     fn tell(&self, what: EventKind) {
         let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         match &what {
@@ -196,7 +209,10 @@ fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
             Ok(news) => live.hear(news),
             Err(RecvTimeoutError::Timeout) => {}
             // This thread was too slow for the engine. It listens anew, which begins with all lanes.
-            Err(RecvTimeoutError::Disconnected) => heard = engine.listen(),
+            Err(RecvTimeoutError::Disconnected) => {
+                heard = engine.listen();
+                live.missed();
+            }
         }
         if beat.elapsed() >= BEAT {
             beat = Instant::now();
@@ -204,5 +220,27 @@ fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
                 live.tell(EventKind::Beat(live.moment()));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `assets/live.js` takes everything anew when a number is not the one after the last.
+    #[test]
+    fn news_that_were_missed_are_missed_by_no_page_silently() {
+        let live = Live::of(Vec::new());
+        let (now, mut page) = live.follow();
+        let (_, mut answer) = live.ask();
+        live.tell(EventKind::Beat(String::new()));
+        live.missed();
+        live.tell(EventKind::Beat(String::new()));
+        let heard = [page.try_recv().unwrap().id, page.try_recv().unwrap().id];
+        assert_eq!((now.id, heard), (0, [1, 3]));
+        assert!(
+            matches!(answer.try_recv(), Err(oneshot::error::TryRecvError::Closed)),
+            "it is not waited for"
+        );
     }
 }
