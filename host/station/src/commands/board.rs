@@ -15,7 +15,7 @@ use serde_json::json;
 use super::beginning::{SettingsFile, Signal};
 use super::looking::{either, table, time};
 use super::plant::plant;
-use super::why::{Why, person};
+use super::why::{Why, at_plant, person};
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
@@ -166,22 +166,26 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             }
             link::check(&share.board).map_err(Failure::call)?;
             share.refuse_other_place().map_err(Failure::call)?;
-            shared(&mut Plant::connect(&address)?, share)
+            shared(&mut at_plant(&address, &share.operator, "board share", &share.name)?, share)
         }
         Action::List { json } => {
             let found = PlantPool::new(address).look(boards)?;
             either(&found, *json, |found| text(found))
         }
         Action::Out(Change { name, why: Why { reason, operator } }) => {
-            let out = Plant::connect(&address)?.take_out(name, reason, operator)?;
+            let out = at_plant(&address, operator, "board out", name)?.take_out(name, reason, operator)?;
             changed(out, name, "out")
         }
-        Action::In(Change { name, why: Why { reason, operator } }) => {
-            changed(Plant::connect(&address)?.put_in(name, reason, operator)?, name, "in")
-        }
-        Action::Unshare(Change { name, why: Why { reason, operator } }) => {
-            changed(Plant::connect(&address)?.unshare(name, operator, reason)?, name, "unshared")
-        }
+        Action::In(Change { name, why: Why { reason, operator } }) => changed(
+            at_plant(&address, operator, "board in", name)?.put_in(name, reason, operator)?,
+            name,
+            "in",
+        ),
+        Action::Unshare(Change { name, why: Why { reason, operator } }) => changed(
+            at_plant(&address, operator, "board unshare", name)?.unshare(name, operator, reason)?,
+            name,
+            "unshared",
+        ),
         Action::Hold { kind } => hold(&address, kind, &settings.name),
     }
 }

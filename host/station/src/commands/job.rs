@@ -8,12 +8,12 @@ use halfrow_program::number::counted;
 use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
 use super::plant::plant;
-use super::why::{Why, person};
+use super::why::{Why, at_plant, person};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::plan::Plan;
 use crate::settings::is_word;
-use crate::store::{Job, NewJob, Plant, PlantPool, STATES, Wanted, jobs};
+use crate::store::{Job, NewJob, PlantAddress, PlantPool, STATES, Wanted, jobs};
 
 /// How many jobs are listed unless the command says otherwise.
 const LISTED: u32 = 100;
@@ -122,7 +122,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let settings = settings.load_without_lanes()?;
     let address = plant(&settings)?.address()?;
     match what {
-        Action::Add(add) => add_jobs(&mut Plant::connect(&address)?, add),
+        Action::Add(add) => add_jobs(&address, add),
         Action::List { state, most, json } => {
             let states = match state {
                 Some(state) => vec![state.name()],
@@ -132,17 +132,17 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             either(&found, *json, |found| text(found))
         }
         Action::Cancel(Change { id, why: Why { reason, operator } }) => {
-            let done = Plant::connect(&address)?.cancel_job(id, operator, reason)?;
+            let done = at_plant(&address, operator, "job cancel", id)?.cancel_job(id, operator, reason)?;
             changed(done, id, "cancelled")
         }
         Action::Retry(Change { id, why: Why { reason, operator } }) => {
-            let done = Plant::connect(&address)?.retry_job(id, operator, reason)?;
+            let done = at_plant(&address, operator, "job retry", id)?.retry_job(id, operator, reason)?;
             changed(done, id, "retried")
         }
     }
 }
 
-fn add_jobs(plant: &mut Plant, add: &Add) -> Result<Exit, Failure> {
+fn add_jobs(address: &PlantAddress, add: &Add) -> Result<Exit, Failure> {
     let plan = Plan::load(&add.plan).map_err(Failure::call)?;
     let wanted = match (&add.serial, &add.kind) {
         (Some(serial), _) => {
@@ -154,6 +154,7 @@ fn add_jobs(plant: &mut Plant, add: &Add) -> Result<Exit, Failure> {
     if let Some(word) = add.needs.iter().find(|word| !is_word(word)) {
         return Err(Failure::call(NoWord { word: word.clone() }));
     }
+    let (Wanted::Serial(of) | Wanted::Kind(of)) = &wanted;
     let job = NewJob {
         plan: &plan,
         wanted: &wanted,
@@ -161,6 +162,7 @@ fn add_jobs(plant: &mut Plant, add: &Add) -> Result<Exit, Failure> {
         priority: add.priority,
         operator: &add.operator,
     };
+    let mut plant = at_plant(address, &add.operator, "job add", of)?;
     print(&plant.add_jobs(&job, add.count)?.join("\n"))
 }
 

@@ -8,7 +8,7 @@ use halfrow_program::number::counted;
 use serde_json::json;
 
 use super::looking::Data;
-use super::why::person;
+use super::why::{entered, person};
 use super::{Failure, document, print};
 use crate::clock;
 use crate::console;
@@ -98,6 +98,7 @@ pub(super) struct Prune {
 pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
     let Prune { data, older_than, operator, json } = arguments;
     let mut store = Store::open_existing(&data.folder())?;
+    entered(&mut store, operator, "prune", &data.folder().path().display().to_string())?;
     let old = match older_than {
         Some(days) => kept::prune(&mut store, days_ago_ms(*days), operator)?,
         None => Pruned::default(),

@@ -9,7 +9,7 @@ use halfrow_program::number::counted;
 use super::beginning::{SettingsFile, Signal};
 use super::kept::days_ago_ms;
 use super::publish::{address, published};
-use super::why::Why;
+use super::why::{Why, at_plant};
 use super::{Failure, check, print};
 use crate::check::check_plant;
 use crate::console;
@@ -82,7 +82,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             print(&format!("the plant {address} has version {version}"))
         }
         Action::Forget { station, why: Why { reason, operator } } => {
-            if Plant::connect(&address()?)?.forget(station, operator, reason)? {
+            if at_plant(&address()?, operator, "plant forget", station)?.forget(station, operator, reason)? {
                 return print(&format!("the next folder that says it is {station} is taken for it"));
             }
             Err(Failure::call(NoStation { station: station.clone() }))
@@ -95,8 +95,8 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         Action::Prune { older_than, why: Why { reason, operator } } => {
             let before_ms = days_ago_ms(*older_than);
             let mut told = progress("rows removed");
-            let removed =
-                Plant::connect(&address()?.patient())?.prune(before_ms, operator, reason, &mut told)?;
+            let removed = at_plant(&address()?.patient(), operator, "plant prune", "")?
+                .prune(before_ms, operator, reason, &mut told)?;
             let (rows, were) = (count(removed, "row"), verb(removed, "were"));
             print(&format!("{rows} {were} removed; every record is kept"))
         }

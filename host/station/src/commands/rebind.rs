@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::why::{person, said};
+use super::why::{entered, person, said};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::store::{Change, Folder, RebindError, Store, is_device};
@@ -42,6 +42,7 @@ fn device(text: &str) -> Result<String, String> {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Arguments { data, serial, reason, device, product, operator } = arguments;
     let mut store = Store::open(&Folder::new(data))?;
+    entered(&mut store, operator, "rebind", serial)?;
     let change = Change { serial, product: product.as_deref(), device: device.as_deref(), operator, reason };
     let bound = store.rebind(&change)?;
     let from_now = device.as_deref().map_or_else(

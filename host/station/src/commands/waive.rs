@@ -5,7 +5,7 @@ use halfrow::words::plain;
 
 use super::Failure;
 use super::looking::Data;
-use super::why::person;
+use super::why::{entered, person};
 use crate::console;
 use crate::exit::Exit;
 use crate::store::{NoWaiver, Store};
@@ -30,6 +30,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut store = Store::open_existing(&arguments.data.folder())?;
+    entered(&mut store, &arguments.operator, "waive", &arguments.run)?;
     let waiver = store.waive(&arguments.run, &arguments.operator, &arguments.reason)?;
     let said = format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason);
     console::tell(&plain(&said));

@@ -1,6 +1,15 @@
-//! Who does something, and why. The audit keeps both.
+//! Who does something, and why. The audit keeps both, and under which account it was called.
+
+use std::{env, fs};
 
 use clap::Args;
+use halfrow::words::plain;
+use nix::unistd::{Uid, User, getuid};
+
+use crate::store::{Plant, PlantAddress, Store, StoreError};
+
+/// What the audit calls a command that somebody gives to do something.
+const ACT: &str = "command";
 
 /// Who, and why.
 #[derive(Debug, Args)]
@@ -27,4 +36,45 @@ pub(super) fn person(text: &str) -> Result<String, String> {
 fn some(text: &str, asked: &str) -> Result<String, String> {
     let text = text.trim();
     if text.is_empty() { Err(asked.to_owned()) } else { Ok(text.to_owned()) }
+}
+
+/// Enters in the audit that `operator` gives the command `what` with `of`, and by which account. Any name can be written after
+/// `--operator`.
+pub(super) fn entered(store: &mut Store, operator: &str, what: &str, of: &str) -> Result<(), StoreError> {
+    store.note(operator, ACT, &format!("{what} {of}"), &account())
+}
+
+/// The plant at `address`, in whose audit the same is entered first.
+pub(super) fn at_plant(
+    address: &PlantAddress,
+    operator: &str,
+    what: &str,
+    of: &str,
+) -> Result<Plant, StoreError> {
+    let mut plant = Plant::connect(address)?;
+    noted(&mut plant, operator, what, of)?;
+    Ok(plant)
+}
+
+/// The same, at a plant that is connected already.
+pub(super) fn noted(plant: &mut Plant, operator: &str, what: &str, of: &str) -> Result<(), StoreError> {
+    plant.note(operator, ACT, &format!("{what} {of}"), &account())
+}
+
+/// Whose process this is: by the real user id, by the login that it came from, and as `sudo` says. The last is only what the
+/// environment has.
+fn account() -> String {
+    let login = fs::read_to_string("/proc/self/loginuid").ok();
+    let login = login.and_then(|text| text.trim().parse().ok()).filter(|uid| *uid != u32::MAX);
+    let login = login.map(|uid| format!(", login {}", named(Uid::from_raw(uid))));
+    let sudo = env::var_os("SUDO_USER").map(|name| format!(", SUDO_USER {}", plain(&name.to_string_lossy())));
+    format!("{}{}{}", named(getuid()), login.unwrap_or_default(), sudo.unwrap_or_default())
+}
+
+/// A user's id and name.
+fn named(uid: Uid) -> String {
+    match User::from_uid(uid) {
+        Ok(Some(user)) => format!("uid {uid} ({})", plain(&user.name)),
+        _ => format!("uid {uid}"),
+    }
 }

@@ -216,6 +216,20 @@ impl Plant {
         self.carry_out("to take a board back", back)
     }
 
+    /// Enters in the audit that `operator` does `act` with `subject`; `detail` says how.
+    ///
+    /// # Errors
+    /// Like [`Self::share`].
+    pub(crate) fn note(
+        &mut self,
+        operator: &str,
+        act: &str,
+        subject: &str,
+        detail: &str,
+    ) -> Result<(), StoreError> {
+        self.audited(operator, act, subject, detail, |_| Ok(1)).map(drop)
+    }
+
     /// Carries out `change`, and enters it in the audit if it changed any row. Returns whether it did.
     pub(super) fn audited(
         &mut self,

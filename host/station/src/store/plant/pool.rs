@@ -55,8 +55,7 @@ impl PlantPool {
         subject: &str,
         detail: &str,
     ) -> Result<(), StoreError> {
-        let mut plant = Plant::connect(&self.0.address)?;
-        plant.audited(operator, act, subject, detail, |_| Ok(1)).map(drop)
+        Plant::connect(&self.0.address)?.note(operator, act, subject, detail)
     }
 
     /// A snapshot by a connection that was kept, or by a new one if there is none or it has ended meanwhile.

@@ -31,7 +31,14 @@ impl Engineer {
 
     /// The acts in the audit.
     fn acts(&self) -> Vec<String> {
-        self.server.rows("SELECT act FROM audit WHERE operator_id = 'engel' ORDER BY id").concat()
+        self.server
+            .rows("SELECT act FROM audit WHERE operator_id = 'engel' AND act <> 'command' ORDER BY id")
+            .concat()
+    }
+
+    /// The commands in the audit.
+    fn commands(&self) -> Vec<String> {
+        self.server.rows("SELECT subject FROM audit WHERE act = 'command' ORDER BY id").concat()
     }
 }
 
@@ -67,6 +74,8 @@ fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
     );
     assert!(engineer.did(&["job", "list", "--state", "waiting"]).said.contains("any mock"));
     assert_eq!(engineer.acts(), ["add job", "cancel job", "retry job"]);
+    let [cancel, retry] = ["cancel", "retry"].map(|act| format!("job {act} {}", ids[0]));
+    assert_eq!(engineer.commands(), ["job add mock", &cancel, &cancel, &retry], "also what came to nothing");
 }
 
 #[test]
@@ -108,6 +117,8 @@ fn boards_are_shared_changed_and_listed_by_commands_that_the_audit_keeps() {
     );
     assert!(engineer.did(&["board", "list"]).said.contains("no board is shared"));
     assert_eq!(engineer.acts(), ["share board", "board out", "board in", "unshare board"]);
+    let called = ["share", "out", "in", "unshare", "out"].map(|act| format!("board {act} shelf-1"));
+    assert_eq!(engineer.commands(), called);
 }
 
 /// Whoever else got it would judge its own board under this one's serial number.

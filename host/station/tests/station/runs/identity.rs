@@ -26,6 +26,7 @@ fn rebind(station: &Station, arguments: &[&str]) -> Did {
         .arg(station.data())
         .args(arguments)
         .args(["--operator", "engineer"])
+        .env("SUDO_USER", "braun")
         .output()
         .unwrap()
         .into()
@@ -215,12 +216,24 @@ fn an_engineer_binds_anew_with_a_reason_that_is_kept() {
     assert_eq!(did.code, Some(0), "{did:?}");
     assert_eq!(station.run("CAT00071", &device(0x33)).code, Some(0));
     assert_eq!(
-        station.query("SELECT operator_id || ' ' || act || ' ' || detail FROM audit ORDER BY id"),
+        station.query(
+            "SELECT operator_id || ' ' || act || ' ' || detail FROM audit WHERE act = 'rebind' ORDER BY id"
+        ),
         [
             r#"engineer rebind {"device":null,"reason":"FPGA exchanged"}"#,
             r#"engineer rebind {"device":"0000000000000033","reason":"labels"}"#
         ]
     );
+    // Whatever name was given: whose process it was.
+    let called = station.query(
+        "SELECT operator_id || ' ' || subject || ': ' || detail FROM audit WHERE act = 'command' ORDER BY id",
+    );
+    let id = Did::from(Command::new("id").arg("-u").output().unwrap()).said;
+    for (called, serial) in called.iter().zip(["CAT00017", "CAT00071"]) {
+        assert!(called.starts_with(&format!("engineer rebind {serial}: uid {}", id.trim())), "{called}");
+        assert!(called.ends_with(", SUDO_USER braun"), "{called}");
+    }
+    assert_eq!(called.len(), 2);
     assert_eq!(station.query("SELECT count(*) FROM binding WHERE to_ms IS NULL"), ["1"]);
     assert_well(&station);
     let database = rusqlite::Connection::open(station.store().database()).unwrap();

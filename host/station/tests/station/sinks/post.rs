@@ -176,9 +176,9 @@ fn what_a_server_answers_says_who_waits_for_whom() {
     server.answers("204 ");
     let release = ["outbox", "release", "--sink", "mes", "--reason", "known now", "--operator", "engel"];
     assert_eq!(did(folder.path(), &sink, &release).said, "8 of mes are tried again\n");
-    // The release has its line in the audit.
+    // The release has its line in the audit, and so has the command.
     let sent = send(folder.path(), &sink);
-    assert!(sent.said.starts_with("9 sent, 0 not") && sent.code == Some(0), "{sent:?}");
+    assert!(sent.said.starts_with("10 sent, 0 not") && sent.code == Some(0), "{sent:?}");
 }
 
 #[test]
