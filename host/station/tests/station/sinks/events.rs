@@ -196,12 +196,12 @@ fn an_event_that_is_too_long_for_a_broker_keeps_no_other_one_waiting() {
     let folder = station();
     // The waiver is the first that is sent.
     let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
-    database.execute("UPDATE waiver SET id = '0' || substr(id, 2)", []).unwrap();
+    database.execute("UPDATE waiver SET id = '00' || substr(id, 3)", []).unwrap();
     database
-        .execute("UPDATE outbox SET subject = '0' || substr(subject, 2) WHERE kind = 'waiver'", [])
+        .execute("UPDATE outbox SET subject = '00' || substr(subject, 3) WHERE kind = 'waiver'", [])
         .unwrap();
     let waiver: String = database.query_row("SELECT id FROM waiver", [], |row| row.get(0)).unwrap();
-    assert!(waiver.starts_with('0'));
+    assert!(waiver.starts_with("00"));
     drop(database);
     let sent = send(folder.path(), &broker.sink(folder.path(), "mqtt", PASSWORD, ""));
     assert!(sent.said.starts_with("3 sent, 1 not"), "{sent:?}");
