@@ -245,7 +245,8 @@ impl Floor {
     /// Takes what happened to a lane at the time `now`.
     pub fn happened(&mut self, lane: usize, event: Event, now: Duration) -> Option<Effect> {
         if let Event::Present(is_present) = event {
-            return self.looked(&[(lane, is_present)], now).pop()?.1;
+            let effects = self.looked(&[(lane, is_present)], now);
+            return effects.into_iter().find_map(|(of, effect)| effect.filter(|_| of == lane));
         }
         self.lanes.get_mut(lane)?.take(event).ok()?
     }

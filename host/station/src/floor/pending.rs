@@ -15,6 +15,8 @@ pub(super) struct Pending {
     /// Who scanned it.
     operator: String,
     since: Duration,
+    /// The lanes into which boards came at the last look.
+    came: Vec<usize>,
 }
 
 impl Pending {
@@ -30,9 +32,10 @@ impl Floor {
         self.pending.as_ref().filter(|pending| pending.is_fresh(now)).map(|pending| pending.serial.as_str())
     }
 
-    /// Takes which boards came or went, all seen at one look at the time `now`; returns each of these lanes with what is to
-    /// be done there. A serial number that waits belongs to the next board that is plugged in: it goes to that board's lane,
-    /// or to none. Of boards that came together nobody knows which was first.
+    /// Takes which boards came or went, all seen at one look at the time `now`; returns what is to be done in each of these
+    /// lanes. A serial number that waits belongs to the next board that is plugged in: it goes to that board's lane, or to none.
+    /// Of boards that came together nobody knows which was first. They may be seen at two looks, so the number goes to its
+    /// lane one look later.
     pub fn looked(&mut self, changes: &[(usize, bool)], now: Duration) -> Vec<(usize, Option<Effect>)> {
         let (mut effects, mut came) = (Vec::new(), Vec::new());
         for &(place, is_present) in changes {
@@ -45,20 +48,22 @@ impl Floor {
             }
             effects.push((place, effect));
         }
-        if !came.is_empty()
-            && let Some(pending) = self.pending.take().filter(|pending| pending.is_fresh(now))
-            && let Some(begun) = self.plugged(&came, pending)
-            && let Some((_, effect)) = effects.iter_mut().find(|(place, _)| came.first() == Some(place))
-        {
-            *effect = Some(begun);
+        if let Some(mut pending) = self.pending.take() {
+            let is_second_look = !pending.came.is_empty();
+            pending.came.append(&mut came);
+            if is_second_look {
+                effects.extend(self.plugged(pending).map(|(lane, begun)| (lane, Some(begun))));
+            } else if pending.is_fresh(now) {
+                self.pending = Some(pending);
+            }
         }
         effects
     }
 
     /// Gives the only lane into which a board came the serial number that waited. If that cannot be, the lanes say why.
-    fn plugged(&mut self, came: &[usize], Pending { serial, operator, .. }: Pending) -> Option<Effect> {
-        let given = match came {
-            &[lane] => self.give(lane, &serial, &operator).map(|answer| (lane, answer.effect)),
+    fn plugged(&mut self, Pending { serial, operator, came, .. }: Pending) -> Option<(usize, Effect)> {
+        let given = match came[..] {
+            [lane] => self.give(lane, &serial, &operator).map(|answer| (lane, answer.effect)),
             _ => {
                 let lanes = came.iter().map(|&lane| self.name(lane)).collect::<Vec<_>>().join(", ");
                 Err(ScanError::Together { lanes })
@@ -67,11 +72,12 @@ impl Floor {
         match given {
             // Some lanes are started by plugging the board in.
             Ok((lane, effect)) => {
-                effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
+                let begun = effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?);
+                Some((lane, begun?))
             }
             Err(refused) => {
                 let why = Said::of(&refused);
-                for &lane in came {
+                for lane in came {
                     let missed = Saying::NotGiven { serial: serial.clone(), why: why.clone() };
                     self.lanes.get_mut(lane)?.miss(missed.into());
                 }
@@ -94,7 +100,7 @@ impl Floor {
             Some(other) => Saying::WaitsInstead { serial: serial.clone(), other },
             None => Saying::WaitsForPlug { serial: serial.clone() },
         };
-        self.pending = Some(Pending { serial, operator: operator.to_owned(), since: now });
+        self.pending = Some(Pending { serial, operator: operator.to_owned(), since: now, came: Vec::new() });
         Ok(ScanOutcome { lane: None, effect: None, said: said.into() })
     }
 }

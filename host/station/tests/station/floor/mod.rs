@@ -196,7 +196,8 @@ fn a_run_is_that_of_whoever_scanned_its_number_or_pressed_its_button() {
     plug(&mut first, 1);
     first.scan(&serial(0), WEBER, at(0)).unwrap();
     assert_eq!(begun_by(first.scan_for(1, &serial(1), "braun", at(1)).unwrap().effect), "braun");
-    assert_eq!(begun_by(plug(&mut first, 0)), WEBER);
+    plug(&mut first, 0);
+    assert_eq!(begun_by(first.looked(&[], at(2)).remove(0).1), WEBER);
     let mut button = floor(&[BUTTON], false);
     plug(&mut button, 0);
     button.scan(&serial(0), WEBER, at(0)).unwrap();

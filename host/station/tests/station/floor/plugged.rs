@@ -101,8 +101,12 @@ fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
     floor.scan(&serial(0), WEBER, at(10)).unwrap();
     let instead = floor.scan(&serial(1), WEBER, at(20)).unwrap();
     assert!(instead.said.to_string().ends_with(&format!("instead of {}", serial(0))), "{instead:?}");
-    let effect = floor.happened(1, Event::Present(true), at(80));
-    assert!(matches!(effect, Some(Effect::Begin(accepted)) if accepted.serial == serial(1)));
+    assert_eq!(floor.happened(1, Event::Present(true), at(80)), None, "another one may have come with it");
+    let begun = floor.looked(&[], at(81));
+    assert!(
+        matches!(&begun[..], [(1, Some(Effect::Begin(accepted)))] if accepted.serial == serial(1)),
+        "{begun:?}"
+    );
     assert_eq!(words(&floor), [Word::Ready, Word::Running]);
 }
 
@@ -121,23 +125,30 @@ fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
     assert_eq!(floor.pending(at(5)), None);
     floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(6));
     assert_eq!(floor.happened(1, Event::Present(true), at(7)), None);
+    assert_eq!(floor.looked(&[], at(8)), []);
     assert_eq!(words(&floor), [Word::Pass, Word::Ready]);
 }
 
-/// Nobody knows which of them was plugged in first.
+/// Nobody knows which of them was plugged in first, also if they are seen one look after the other.
 #[test]
 fn a_number_goes_to_none_of_the_boards_that_come_together() {
-    let mut floor = floor(&[PLUG, SCAN, SCAN], true);
-    floor.scan(&serial(0), WEBER, at(0)).unwrap();
-    let effects = floor.looked(&[(0, true), (1, true)], at(1));
-    assert_eq!(effects, [(0, None), (1, None)]);
-    assert_eq!((words(&floor), floor.pending(at(1))), (vec![Word::Ready, Word::Ready, Word::Empty], None));
-    for lane in &floor.lanes()[..2] {
-        let note = lane.note().map(ToString::to_string).unwrap_or_default();
-        assert!(note.contains(&serial(0)) && note.contains("boards came into the lanes 1, 2"), "{note}");
+    for looks in [[&[(0, true), (1, true)][..], &[]], [&[(0, true)], &[(1, true)]]] {
+        let mut floor = floor(&[PLUG, SCAN, SCAN], true);
+        floor.scan(&serial(0), WEBER, at(0)).unwrap();
+        let effects: Vec<_> = looks.iter().flat_map(|changes| floor.looked(changes, at(1))).collect();
+        assert_eq!(effects, [(0, None), (1, None)]);
+        assert_eq!(
+            (words(&floor), floor.pending(at(1))),
+            (vec![Word::Ready, Word::Ready, Word::Empty], None)
+        );
+        for lane in &floor.lanes()[..2] {
+            let note = lane.note().map(ToString::to_string).unwrap_or_default();
+            assert!(note.contains(&serial(0)) && note.contains("boards came into the lanes 1, 2"), "{note}");
+        }
+        assert_eq!(floor.happened(2, Event::Present(true), at(2)), None);
+        assert_eq!(floor.looked(&[], at(3)), [], "it waits no more");
+        assert!(floor.scan_for(1, &serial(0), WEBER, at(3)).unwrap().effect.is_some());
     }
-    assert_eq!(floor.happened(2, Event::Present(true), at(2)), None, "it waits no more");
-    assert!(floor.scan_for(1, &serial(0), WEBER, at(3)).unwrap().effect.is_some());
 }
 
 /// A board whose lane has its number already is not meant.
@@ -150,12 +161,14 @@ fn a_number_goes_to_the_only_board_without_one_of_those_that_come_together() {
     let begun = floor.looked(&[(0, true), (1, true), (2, false)], at(1));
     let serials: Vec<_> = begun
         .into_iter()
+        .chain(floor.looked(&[], at(2)))
         .map(|(lane, effect)| match effect {
             Some(Effect::Begin(of)) => (lane, of.serial),
             other => (lane, format!("{other:?}")),
         })
         .collect();
-    assert_eq!(serials, [(0, serial(1)), (1, serial(0)), (2, "None".to_owned())]);
+    let none = || "None".to_owned();
+    assert_eq!(serials, [(0, serial(1)), (1, none()), (2, none()), (1, serial(0))]);
 }
 
 /// The mock needs no fixture, and the board in the lane stays unjudged.
@@ -179,6 +192,7 @@ fn a_number_waits_a_minute_for_its_board() {
         let mut floor = floor(&[SCAN, SCAN], true);
         floor.scan(&serial(0), WEBER, at(0)).unwrap();
         floor.happened(0, Event::Present(true), at(seconds));
+        floor.looked(&[], at(seconds + 1));
         assert_eq!(words(&floor)[0], word);
     }
 }
@@ -189,6 +203,7 @@ fn a_board_that_was_there_already_takes_no_number() {
     plug(&mut floor, 0);
     floor.scan(&serial(0), WEBER, at(0)).unwrap();
     assert_eq!(plug(&mut floor, 0), None);
+    assert_eq!(floor.looked(&[], at(1)), []);
     assert_eq!(words(&floor), [Word::Ready, Word::Empty]);
 }
 
@@ -221,11 +236,13 @@ fn a_number_whose_board_came_to_a_lane_that_does_not_take_it_waits_for_no_other(
     for (why, mut floor) in taking_nothing() {
         floor.scan(&serial(0), WEBER, at(1)).unwrap();
         assert_eq!(floor.happened(0, Event::Present(true), at(2)), None, "{why}");
+        assert_eq!(floor.looked(&[], at(2)), [], "{why}");
         let noted = |floor: &Floor| floor.lanes()[0].note().map(ToString::to_string).unwrap_or_default();
         let note = noted(&floor);
         assert!(note.contains(&serial(0)) && note.contains(why), "{why}: {note}");
         assert_eq!(floor.pending(at(2)), None, "{why}");
         assert_eq!(floor.happened(1, Event::Present(true), at(3)), None, "{why}");
+        assert_eq!(floor.looked(&[], at(3)), [], "{why}");
         assert_eq!(words(&floor)[1], Word::Ready, "{why}");
         floor.happened(0, Event::Present(false), at(4));
         assert!(!noted(&floor).contains(&serial(0)), "{why}: it goes with its board");
@@ -241,6 +258,7 @@ fn a_number_that_was_not_given_does_not_hide_why_its_lane_is_out_or_saved_nothin
     for floor in [&mut owes, &mut running] {
         floor.scan(&serial(0), WEBER, at(1)).unwrap();
         floor.happened(0, Event::Present(true), at(2));
+        floor.looked(&[], at(2));
         assert!(noted(floor).contains(&serial(0)), "{}", noted(floor));
     }
     owes.act(0, Act::Out, WEBER).unwrap();
@@ -254,6 +272,7 @@ fn a_number_that_was_not_given_does_not_hide_why_its_lane_is_out_or_saved_nothin
     running.happened(0, Event::Present(false), at(4));
     running.scan(&serial(2), WEBER, at(5)).unwrap();
     running.happened(0, Event::Present(true), at(6));
+    running.looked(&[], at(6));
     running.happened(0, full(), at(7));
     assert!(noted(&running).contains(&serial(2)), "{}", noted(&running));
 }
