@@ -107,7 +107,7 @@ function lane(event, isNews) {
   todayIsStale ||= Boolean(event.verdict);
 }
 
-// A failed hook belongs to a verdict that is shown; it is no answer to a scan.
+// A failed hook is no answer to a scan.
 function hook({ lane, said }) {
   noticed = lane;
   put("notice", `${by("notice").dataset.lane} ${lane}: ${said}`);

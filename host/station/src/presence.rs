@@ -52,10 +52,13 @@ pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
 }
 
 /// Whether both names are of one board, as far as they and what is plugged in say. A chip that `usb:` names has one board,
-/// and `ports` says which serial ports are of that chip, too. Two ports of a chip may have a board each.
+/// unless the name says at which channel, and `ports` says which serial ports are of that chip, too. Two ports of a chip may
+/// have a board each.
 pub(crate) fn is_same(one: &Target, other: &Target, devices: &Path, ports: &Path) -> bool {
     match (one.kind.as_str(), other.kind.as_str()) {
-        ("usb", "serial") => place(one, devices).is_some_and(|chip| Some(chip) == chip_of(other, ports)),
+        ("usb", "serial") => interface_of(other, ports).is_some_and(|(chip, interface)| {
+            Some(chip) == place(one, devices) && channel(one).is_none_or(|channel| channel == interface)
+        }),
         ("serial", "usb") => is_same(other, one, devices, ports),
         (kind, of_other) => {
             kind == of_other && place(one, devices).is_some_and(|one| Some(one) == place(other, devices))
@@ -77,12 +80,22 @@ fn place(board: &Target, devices: &Path) -> Option<PathBuf> {
     Some(found.unwrap_or_else(|| address.into()))
 }
 
-/// The place of the USB device that a serial port is of, if it is plugged in and of one.
-fn chip_of(port: &Target, ports: &Path) -> Option<PathBuf> {
+/// The channel of a chip that a `usb:` name says its board is at: its interface's number there, from 0.
+fn channel(board: &Target) -> Option<u32> {
+    let (_, letter) = board.options.iter().find(|(key, _)| key == "channel")?;
+    let place = ["a", "b", "c", "d"].iter().position(|known| known == letter)?;
+    u32::try_from(place).ok()
+}
+
+/// The place of the USB device that a serial port is of, if it is plugged in and of one, and the number of its interface there.
+fn interface_of(port: &Target, ports: &Path) -> Option<(PathBuf, u32)> {
     let port = fs::canonicalize(port.address.as_deref()?).ok()?;
-    let interface = fs::canonicalize(ports.join(port.file_name()?).join("device")).ok()?;
-    let device = interface.ancestors().find(|folder| folder.join("idVendor").is_file())?;
-    Some(device.file_name()?.into())
+    let port = fs::canonicalize(ports.join(port.file_name()?).join("device")).ok()?;
+    let interface = port
+        .ancestors()
+        .find(|folder| folder.parent().is_some_and(|device| device.join("idVendor").is_file()))?;
+    let (_, number) = interface.file_name()?.to_str()?.rsplit_once('.')?;
+    Some((interface.parent()?.file_name()?.into(), number.parse().ok()?))
 }
 
 /// Whether a board is present. Short absences while its system starts are ignored.
@@ -182,6 +195,9 @@ mod tests {
             let [one, other] = [one, other].map(|name| name.parse().unwrap());
             is_same(&one, &other, &devices, &ports)
         };
+        let of_channel =
+            ["ttyUSB0", "ttyUSB1", "ttyUSB2"].map(|name| same("usb:1-2.3,channel=b", &port(name)));
+        assert_eq!(of_channel, [false, true, false]);
         for usb in ["usb:1-2.3", "usb:FT1-2.3"] {
             let of_ports = ["ttyUSB0", "by-path", "ttyUSB2", "none"].map(|name| same(usb, &port(name)));
             assert_eq!(of_ports, [true, true, false, false], "{usb}");

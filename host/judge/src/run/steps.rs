@@ -133,7 +133,7 @@ impl Run<'_> {
             }
             last = Some(segment);
             if let Err(end) = after.and_then(|()| self.prepare(segment)) {
-                self.findings.attempt.is_wrong |= !seen.is_right();
+                self.findings.attempt.seen_wrong |= !seen.is_right();
                 self.return_to(segment, 0, end)?;
             }
             self.stream(segment, source, seen)?;
@@ -148,7 +148,7 @@ impl Run<'_> {
     fn judge_over_outages(&mut self, last: Option<&Segment>, seen: &mut Observations) -> Result<(), End> {
         self.persist(last, |run| {
             let judged = run.judge_what_came(seen);
-            run.findings.attempt.is_wrong |= !seen.is_right();
+            run.findings.attempt.seen_wrong |= !seen.is_right();
             judged
         })
     }

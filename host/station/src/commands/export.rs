@@ -66,12 +66,12 @@ fn one(of: &Snapshot, run: &str, format: Format, to: Option<&Path>) -> Result<Ex
 
 /// Writes all runs that pass the filter and can be read, and prints how many there are.
 fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit, Failure> {
-    let Each { written, lost } = if format == Format::Csv {
+    let Exported { written, lost } = if format == Format::Csv {
         let aside = Aside::written(to, false, |_| Ok(())).map_err(unwritten)?;
         let mut table = Table::begin(aside)?;
-        let each = each(of, filter, |_, record, _| Ok(table.add(&record)?))?;
+        let exported = each(of, filter, |_, record, _| Ok(table.add(&record)?))?;
         table.end().put_in_place().map_err(unwritten)?;
-        each
+        exported
     } else {
         fs::create_dir_all(to).map_err(|source| Failure::call(NoFolder { path: to.to_owned(), source }))?;
         each(of, filter, |run, record, bytes| {
@@ -87,9 +87,9 @@ fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit
 
 /// What became of the runs that are exported.
 #[derive(Default)]
-struct Each {
+struct Exported {
     written: usize,
-    /// Those whose records are damaged.
+    /// Those whose records cannot be read.
     lost: Vec<String>,
 }
 
@@ -98,8 +98,8 @@ fn each(
     of: &Snapshot,
     filter: &Filter,
     mut write: impl FnMut(&str, Record, Vec<u8>) -> Result<(), Failure>,
-) -> Result<Each, Failure> {
-    let (mut each, mut after) = (Each::default(), None);
+) -> Result<Exported, Failure> {
+    let (mut exported, mut after) = (Exported::default(), None);
     loop {
         let page = page(of, filter, after.as_ref(), MOST)?;
         for run in &page.runs {
@@ -107,27 +107,27 @@ fn each(
             match export::record(of, hash) {
                 Ok((record, bytes)) => {
                     write(&run.id, record, bytes)?;
-                    each.written += 1;
+                    exported.written += 1;
                 }
                 Err(ExportError::Store(error)) if error.is_of_record() => {
                     tracing::warn!("the run {} is left out: {}", run.id, Said::of(&error));
-                    each.lost.push(run.id.clone());
+                    exported.lost.push(run.id.clone());
                 }
                 Err(error) => return Err(error.into()),
             }
         }
         after = page.next;
         if after.is_none() {
-            return Ok(each);
+            return Ok(exported);
         }
     }
 }
 
-/// Runs are missing in what was written, because their records are gone or damaged.
+/// Runs are missing in what was written, because their records cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "these runs are missing there, because their records are gone or damaged: {runs}; put the records back from a copy of \
-     the folder, as `halfrow-station check` says, and export these runs again"
+    "these runs are missing there, because their records cannot be read: {runs}; do what the warning about each says, and \
+     export these runs again"
 )]
 pub(super) struct RunsLost {
     pub(super) runs: String,

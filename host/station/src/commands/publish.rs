@@ -13,7 +13,7 @@ use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
 use super::plan::in_lines;
 use super::plant::NoPlant;
-use super::why::{Why, noted};
+use super::why::{Why, entered_at};
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
@@ -205,7 +205,7 @@ impl Desk<'_> {
             key: self.key.public(),
         };
         let signature = self.key.sign(&statement.text());
-        noted(&mut self.at, &self.why.operator, "plan publish", &name.to_string())?;
+        entered_at(&mut self.at, &self.why.operator, "plan publish", &name.to_string())?;
         if !self.at.publish(&statement, &signature, bundle)? {
             return Err(Failure::error(PublishError::TooLate { plan: name.to_string() }));
         }

@@ -41,10 +41,15 @@ fn some(text: &str, asked: &str) -> Result<String, String> {
 /// Enters in the audit that `operator` gives the command `what` with `of`, and by which account. Any name can be written after
 /// `--operator`.
 pub(super) fn entered(store: &mut Store, operator: &str, what: &str, of: &str) -> Result<(), StoreError> {
-    store.note(operator, ACT, &format!("{what} {of}"), &account())
+    store.note(operator, ACT, format!("{what} {of}").trim_end(), &account())
 }
 
-/// The plant at `address`, in whose audit the same is entered first.
+/// Enters it in the audit of the plant.
+pub(super) fn entered_at(plant: &mut Plant, operator: &str, what: &str, of: &str) -> Result<(), StoreError> {
+    plant.note(operator, ACT, format!("{what} {of}").trim_end(), &account())
+}
+
+/// Connects to the plant at `address`, and enters it there first.
 pub(super) fn at_plant(
     address: &PlantAddress,
     operator: &str,
@@ -52,13 +57,8 @@ pub(super) fn at_plant(
     of: &str,
 ) -> Result<Plant, StoreError> {
     let mut plant = Plant::connect(address)?;
-    noted(&mut plant, operator, what, of)?;
+    entered_at(&mut plant, operator, what, of)?;
     Ok(plant)
-}
-
-/// The same, at a plant that is connected already.
-pub(super) fn noted(plant: &mut Plant, operator: &str, what: &str, of: &str) -> Result<(), StoreError> {
-    plant.note(operator, ACT, &format!("{what} {of}"), &account())
 }
 
 /// Whose process this is: by the real user id, by the login that it came from, and as `sudo` says. The last is only what the

@@ -377,7 +377,7 @@ impl AtWork {
         }
     }
 
-    /// Publishes the state of a lane if it has changed. Lamps show a verdict no longer than the screen does.
+    /// Publishes the state of a lane if it has changed. Once it shows no verdict any more, lamps are put out.
     fn publish(&mut self, lane: usize) {
         let Some(state) = self.floor.lanes().get(lane).map(LaneState::from) else { return };
         let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);

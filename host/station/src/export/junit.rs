@@ -147,9 +147,13 @@ mod tests {
         assert!(element(&document, "testcase", "\"step 3 (step 3, try 1)\"").contains("<skipped"));
         assert!(element(&document, "testcase", "\"verdict\"").contains("Put the board aside."));
         element(&document, "testcase", "\"run.seconds (run)\"");
-        for (name, value) in
-            [("product", "CAM-A"), ("serial", "CA1"), ("operator", "weber"), ("production", "true")]
-        {
+        for (name, value) in [
+            ("product", "CAM-A"),
+            ("serial", "CA1"),
+            ("station", "12"),
+            ("operator", "weber"),
+            ("production", "true"),
+        ] {
             let property = format!("<property name=\"{name}\" value=\"{value}\"");
             assert!(document.contains(&property), "{property}: {document}");
         }

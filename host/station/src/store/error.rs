@@ -276,10 +276,14 @@ impl StoreError {
         matches!(self, Self::Plant { .. } | Self::Certificate(_))
     }
 
-    /// Whether a record is gone or damaged, and the rest of the store may be well.
+    /// Whether this one record cannot be read, and the rest of the store may be well.
     #[must_use]
-    pub(crate) const fn is_of_record(&self) -> bool {
-        matches!(self, Self::Blob(_) | Self::Record(_) | Self::NoRecord { .. })
+    pub(crate) fn is_of_record(&self) -> bool {
+        match self {
+            Self::Blob(error) => !error.is_withheld(),
+            Self::Record(_) | Self::NoRecord { .. } => true,
+            _ => false,
+        }
     }
 
     /// Whether the plant can never store what it was given.

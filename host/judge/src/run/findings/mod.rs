@@ -16,7 +16,7 @@ use checks::Checks;
 
 pub(super) use end::{During, End};
 
-/// What was found in one session, besides the checks and what was seen of frames.
+/// What was found since the run, or its last second look, began, besides the checks and what was seen of frames.
 #[derive(Default)]
 pub(crate) struct Attempt {
     /// Rows that the board should have counted since HELLO.
@@ -24,7 +24,7 @@ pub(crate) struct Attempt {
     /// The least number of rows that it should have counted as sent again.
     pub(crate) repeats_counted: u32,
     /// Whether something was seen wrong that is not judged yet.
-    pub(crate) is_wrong: bool,
+    pub(crate) seen_wrong: bool,
     /// Why the link may have caused it.
     pub(crate) doubt: Option<Doubt>,
     /// Whether some counters were not compared only because the board, unlike the host, says that its link is poor.
@@ -52,7 +52,7 @@ impl Attempt {
     /// Notes that the link to `board` broke. If something was seen wrong before, nothing will show later what that link did, so
     /// a doubt is noted too.
     pub(crate) fn link_broke(&mut self, board: &Board) {
-        if self.is_wrong {
+        if self.seen_wrong {
             let doubt = Doubt::of_session(board).unwrap_or(Doubt::PacketsUncounted {});
             self.doubt.get_or_insert(doubt);
         }

@@ -39,7 +39,7 @@ impl Run<'_> {
 
     fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut RowJudge<'_>) -> Result<(), End> {
         while let Err(error) = self.board.stream(judge) {
-            self.findings.attempt.is_wrong |= judge.has_found();
+            self.findings.attempt.seen_wrong |= judge.has_found();
             let end = self.interrupted(segment, judge, error);
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();

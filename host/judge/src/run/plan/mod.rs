@@ -1,4 +1,4 @@
-//! What a run will do. It is decided and checked before any board is opened.
+//! What a run will do. It is decided and checked before any board is opened; only `within` asks the board first what its link can do.
 
 pub(super) mod misfit;
 pub(super) mod parts;

@@ -23,7 +23,7 @@ const NONCE: u32 = 1 << 16;
 
 /// What went over a link.
 #[derive(Default)]
-struct Went {
+struct Traffic {
     tally: Tally,
     seconds: Duration,
 }
@@ -38,8 +38,8 @@ pub(crate) struct Sessions {
     /// Those opened within a look to make copies of old requests harmless.
     opened: u32,
     /// What went over earlier links, which broke.
-    earlier: Went,
-    /// What went over all links, once the run has ended.
+    earlier: Traffic,
+    /// What went over all links, once the run has ended or no board was opened.
     tally: Tally,
     report: LinkReport,
 }
@@ -58,7 +58,7 @@ impl Sessions {
                 ..options.provenance.session_ids.into()
             },
             opened: 0,
-            earlier: Went::default(),
+            earlier: Traffic::default(),
             tally: Tally::default(),
             report: LinkReport { name, retry_limit: options.retry_limit.of(0), ..LinkReport::default() },
         }

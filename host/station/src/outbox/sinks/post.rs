@@ -21,7 +21,7 @@ use crate::trust;
 
 /// How long a request may take, its answer included.
 const DEADLINE: Duration = Duration::from_secs(30);
-/// How often in a row a try may be said to be in progress: for more than an hour, as retries follow each other.
+/// How often in a row a try may be said to be in progress: for about an hour, as retries follow each other.
 const MOST_IN_PROGRESS: u32 = 20;
 /// How many characters of an answer are reported.
 const TOLD: usize = 500;
@@ -92,9 +92,10 @@ impl PostSink {
         let answer = request.send(bytes.as_slice());
         let unconnected = |error: ureq::Error| SinkError::unconnected(&self.host, error.into());
         let (parts, body) = answer.map_err(unconnected)?.into_parts();
+        // It is counted anew when the document was refused and a person has released it.
         let in_progress = self.in_progress.remove(id).unwrap_or(0);
-        if parts.status == StatusCode::CONFLICT {
-            self.in_progress.insert(id.clone(), in_progress.saturating_add(1));
+        if parts.status == StatusCode::CONFLICT && in_progress < MOST_IN_PROGRESS {
+            self.in_progress.insert(id.clone(), in_progress + 1);
         }
         self.judged(parts.status, body, in_progress)
     }
@@ -219,5 +220,6 @@ mod tests {
             "{refused:?}"
         );
         assert!(matches!(take("b"), Undelivered::NotNow(_)), "another one");
+        assert!(matches!(take("a"), Undelivered::NotNow(_)), "once a person has released it");
     }
 }

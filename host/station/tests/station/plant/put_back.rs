@@ -66,9 +66,9 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     assert!(sent.said.contains("halfrow-station outbox again plant"), "{sent:?}");
     let done = did(folder.path(), &server, &again);
     assert_eq!((done.code, done.said.as_str()), (Some(0), "11 of plant are sent again\n"), "{done:?}");
-    // Together with the audit's line about it.
+    // Together with the audit's lines about it, of which one says by which account.
     let sent = did(folder.path(), &server, &["outbox", "send", "--any-disk"]);
-    assert!(sent.said.starts_with("13 sent, 0 not"), "{sent:?}");
+    assert!(sent.said.starts_with("14 sent, 0 not"), "{sent:?}");
     is_as(&server, &Made::at(folder));
     let told = server.rows("SELECT operator_id, subject, detail FROM audit WHERE act = 'send-again'");
     assert_eq!(told, [["engel", "plant", "its disk broke"]]);
