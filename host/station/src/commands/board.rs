@@ -166,23 +166,25 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             }
             link::check(&share.board).map_err(Failure::call)?;
             share.refuse_other_place().map_err(Failure::call)?;
-            shared(&mut at_plant(&address, &share.operator, "board share", &share.name)?, share)
+            shared(&mut at_plant(&address, &share.operator, &format!("board share {}", share.name))?, share)
         }
         Action::List { json } => {
             let found = PlantPool::new(address).look(boards)?;
             either(&found, *json, |found| text(found))
         }
         Action::Out(Change { name, why: Why { reason, operator } }) => {
-            let out = at_plant(&address, operator, "board out", name)?.take_out(name, reason, operator)?;
+            let out = at_plant(&address, operator, &format!("board out {name}"))?
+                .take_out(name, reason, operator)?;
             changed(out, name, "out")
         }
         Action::In(Change { name, why: Why { reason, operator } }) => changed(
-            at_plant(&address, operator, "board in", name)?.put_in(name, reason, operator)?,
+            at_plant(&address, operator, &format!("board in {name}"))?.put_in(name, reason, operator)?,
             name,
             "in",
         ),
         Action::Unshare(Change { name, why: Why { reason, operator } }) => changed(
-            at_plant(&address, operator, "board unshare", name)?.unshare(name, operator, reason)?,
+            at_plant(&address, operator, &format!("board unshare {name}"))?
+                .unshare(name, operator, reason)?,
             name,
             "unshared",
         ),

@@ -22,7 +22,7 @@ use crate::store::Snapshot;
 ///
 /// One run goes to stdout, or to the file of `--to`. Without a run, all runs that pass the filters are written: `csv` into
 /// the file of `--to`, and each other format into a file for each run in the folder of `--to`. Nothing is overwritten. Runs
-/// that are open are left out. So is a run whose record is damaged: it is named, all others are written, and the exit code
+/// that are open are left out. So is a run whose record cannot be read: it is named, all others are written, and the exit code
 /// is 3.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -132,11 +132,13 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             either(&found, *json, |found| text(found))
         }
         Action::Cancel(Change { id, why: Why { reason, operator } }) => {
-            let done = at_plant(&address, operator, "job cancel", id)?.cancel_job(id, operator, reason)?;
+            let done = at_plant(&address, operator, &format!("job cancel {id}"))?
+                .cancel_job(id, operator, reason)?;
             changed(done, id, "cancelled")
         }
         Action::Retry(Change { id, why: Why { reason, operator } }) => {
-            let done = at_plant(&address, operator, "job retry", id)?.retry_job(id, operator, reason)?;
+            let done =
+                at_plant(&address, operator, &format!("job retry {id}"))?.retry_job(id, operator, reason)?;
             changed(done, id, "retried")
         }
     }
@@ -162,7 +164,7 @@ fn add_jobs(address: &PlantAddress, add: &Add) -> Result<Exit, Failure> {
         priority: add.priority,
         operator: &add.operator,
     };
-    let mut plant = at_plant(address, &add.operator, "job add", of)?;
+    let mut plant = at_plant(address, &add.operator, &format!("job add {of}"))?;
     print(&plant.add_jobs(&job, add.count)?.join("\n"))
 }
 

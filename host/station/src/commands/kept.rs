@@ -98,7 +98,7 @@ pub(super) struct Prune {
 pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
     let Prune { data, older_than, operator, json } = arguments;
     let mut store = Store::open_existing(&data.folder())?;
-    entered(&mut store, operator, "prune", &data.folder().path().display().to_string())?;
+    entered(&mut store, operator, &format!("prune {}", data.folder().path().display()))?;
     let old = match older_than {
         Some(days) => kept::prune(&mut store, days_ago_ms(*days), operator)?,
         None => Pruned::default(),

@@ -95,7 +95,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> Result<Exit, Failure> {
     let mut store = Store::open_existing(folder)?;
     let Why { reason, operator } = why;
-    entered(&mut store, operator, "outbox release", id.or(sink).unwrap_or_default())?;
+    entered(&mut store, operator, &format!("outbox release {}", id.or(sink).unwrap_or_default()))?;
     let (released, what) = match (id, sink) {
         (Some(id), _) => (store.release(id, operator, reason)?, id),
         (None, Some(sink)) => (store.release_all(sink, operator, reason)?, sink),
@@ -112,7 +112,7 @@ fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<
         return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
     }
     let mut store = Store::open_existing(folder)?;
-    entered(&mut store, &why.operator, "outbox again", sink)?;
+    entered(&mut store, &why.operator, &format!("outbox again {sink}"))?;
     let again = store.send_again(sink, &why.operator, &why.reason)?;
     print(&format!("{again} of {sink} {} sent again", verb(again, "are")))
 }
@@ -122,7 +122,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
         return Err(Failure::call(SinkInUse { sink: sink.to_owned() }));
     }
     let mut store = Store::open_existing(folder)?;
-    entered(&mut store, &why.operator, "outbox forget", sink)?;
+    entered(&mut store, &why.operator, &format!("outbox forget {sink}"))?;
     let forgotten = store.forget_sink(sink, &why.operator, &why.reason)?;
     print(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are")))
 }

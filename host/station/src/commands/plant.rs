@@ -82,7 +82,9 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             print(&format!("the plant {address} has version {version}"))
         }
         Action::Forget { station, why: Why { reason, operator } } => {
-            if at_plant(&address()?, operator, "plant forget", station)?.forget(station, operator, reason)? {
+            if at_plant(&address()?, operator, &format!("plant forget {station}"))?
+                .forget(station, operator, reason)?
+            {
                 return print(&format!("the next folder that says it is {station} is taken for it"));
             }
             Err(Failure::call(NoStation { station: station.clone() }))
@@ -95,7 +97,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         Action::Prune { older_than, why: Why { reason, operator } } => {
             let before_ms = days_ago_ms(*older_than);
             let mut told = progress("rows removed");
-            let removed = at_plant(&address()?.patient(), operator, "plant prune", "")?
+            let removed = at_plant(&address()?.patient(), operator, "plant prune")?
                 .prune(before_ms, operator, reason, &mut told)?;
             let (rows, were) = (count(removed, "row"), verb(removed, "were"));
             print(&format!("{rows} {were} removed; every record is kept"))

@@ -205,7 +205,7 @@ impl Desk<'_> {
             key: self.key.public(),
         };
         let signature = self.key.sign(&statement.text());
-        entered_at(&mut self.at, &self.why.operator, "plan publish", &name.to_string())?;
+        entered_at(&mut self.at, &self.why.operator, &format!("plan publish {name}"))?;
         if !self.at.publish(&statement, &signature, bundle)? {
             return Err(Failure::error(PublishError::TooLate { plan: name.to_string() }));
         }

@@ -30,7 +30,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut store = Store::open_existing(&arguments.data.folder())?;
-    entered(&mut store, &arguments.operator, "waive", &arguments.run)?;
+    entered(&mut store, &arguments.operator, &format!("waive {}", arguments.run))?;
     let waiver = store.waive(&arguments.run, &arguments.operator, &arguments.reason)?;
     let said = format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason);
     console::tell(&plain(&said));

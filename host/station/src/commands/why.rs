@@ -38,26 +38,21 @@ fn some(text: &str, asked: &str) -> Result<String, String> {
     if text.is_empty() { Err(asked.to_owned()) } else { Ok(text.to_owned()) }
 }
 
-/// Enters in the audit that `operator` gives the command `what` with `of`, and by which account. Any name can be written after
+/// Enters in the audit that `operator` gives the command `given`, and by which account. Any name can be written after
 /// `--operator`.
-pub(super) fn entered(store: &mut Store, operator: &str, what: &str, of: &str) -> Result<(), StoreError> {
-    store.note(operator, ACT, format!("{what} {of}").trim_end(), &account())
+pub(super) fn entered(store: &mut Store, operator: &str, given: &str) -> Result<(), StoreError> {
+    store.note(operator, ACT, given, &account())
 }
 
 /// Enters it in the audit of the plant.
-pub(super) fn entered_at(plant: &mut Plant, operator: &str, what: &str, of: &str) -> Result<(), StoreError> {
-    plant.note(operator, ACT, format!("{what} {of}").trim_end(), &account())
+pub(super) fn entered_at(plant: &mut Plant, operator: &str, given: &str) -> Result<(), StoreError> {
+    plant.note(operator, ACT, given, &account())
 }
 
 /// Connects to the plant at `address`, and enters it there first.
-pub(super) fn at_plant(
-    address: &PlantAddress,
-    operator: &str,
-    what: &str,
-    of: &str,
-) -> Result<Plant, StoreError> {
+pub(super) fn at_plant(address: &PlantAddress, operator: &str, given: &str) -> Result<Plant, StoreError> {
     let mut plant = Plant::connect(address)?;
-    entered_at(&mut plant, operator, what, of)?;
+    entered_at(&mut plant, operator, given)?;
     Ok(plant)
 }
 
