@@ -42,6 +42,8 @@ pub struct Scenario {
     pub when_late: &'static [&'static str],
     /// Whether it takes ten seconds and more behind an emulated chip.
     pub is_slow: bool,
+    /// Whether it goes without bursts on the simulated board without pins, where they take as long as all the rest of a run.
+    pub is_stepped_on_sim: bool,
 }
 
 /// A scenario that did not end as expected.
@@ -68,6 +70,9 @@ impl fmt::Display for Surprise {
 
 /// The paper's lens with fewer pixels.
 pub(crate) const SMALLER: &[&str] = &["--width", "128", "--height", "72", "--radius", "73.78"];
+
+/// Rows alone, without a burst.
+const STEPPED: &[&str] = &["--at-speed", "0"];
 
 /// Whether the board that `target` names runs in the program that judges it, and so is never late.
 fn is_in_process(target: &str) -> bool {
@@ -98,6 +103,11 @@ impl Scenario {
     /// The same scenario, which takes long.
     pub(crate) const fn slow(self) -> Self {
         Self { is_slow: true, ..self }
+    }
+
+    /// The same scenario, whose bursts would tell of the Verilog what those of others do.
+    pub(crate) const fn stepped_on_sim(self) -> Self {
+        Self { is_stepped_on_sim: true, ..self }
     }
 
     /// The same scenario for other boards.
@@ -134,7 +144,9 @@ impl Scenario {
     /// Like [`Self::run`].
     pub fn judge(&self, target: &str, board: &str) -> Result<Value, Box<Surprise>> {
         let smaller = if kind(target) == "sim" && !self.has_own_size() { SMALLER } else { &[] };
-        let arguments = self.arguments.iter().chain(smaller).copied();
+        let is_without_pins = target.split(',').next() == Some("sim");
+        let stepped = if is_without_pins && self.is_stepped_on_sim { STEPPED } else { &[] };
+        let arguments = self.arguments.iter().chain(smaller).chain(stepped).copied();
         let ended = halfrow(["verify", "--json", "--board", target].into_iter().chain(arguments));
         let said = ended.json();
         let when_late = if is_in_process(target) { &[] } else { self.when_late };

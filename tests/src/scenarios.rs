@@ -38,5 +38,17 @@ const fn expect(
 ) -> Scenario {
     // Options describe a mock, unless the scenario says otherwise.
     let on = if options.is_empty() { On::AnyBoard } else { On::MockOnly };
-    Scenario { name, on, options, arguments, verdict, exit_code, sentence, when_late: &[], is_slow: false }
+    let (is_slow, is_stepped_on_sim) = (false, false);
+    Scenario {
+        name,
+        on,
+        options,
+        arguments,
+        verdict,
+        exit_code,
+        sentence,
+        when_late: &[],
+        is_slow,
+        is_stepped_on_sim,
+    }
 }

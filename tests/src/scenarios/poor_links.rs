@@ -5,32 +5,35 @@ use crate::scenario::{On, Scenario};
 
 /// Links that lose or spoil something, but not too much.
 pub const REPAIRED_LINKS: &[Scenario] = &[
-    passes("a flipped bit in a row", ",fault=flip,byte=60000", STEPPED),
-    passes("a flipped bit in a packet to the board", ",fault=flip,packet=60,toward=board", STEPPED),
-    passes("a flipped bit in a packet to the host", ",fault=flip,packet=60,toward=host", STEPPED),
+    passes("a flipped bit in a row", ",fault=flip,byte=60000", SMALL).stepped_on_sim(),
+    passes("a flipped bit in a packet to the board", ",fault=flip,packet=60,toward=board", SMALL)
+        .stepped_on_sim(),
+    passes("a flipped bit in a packet to the host", ",fault=flip,packet=60,toward=host", SMALL)
+        .stepped_on_sim(),
     passes("bits that flip now and then", ",fault=flip,rate=5e-5,seed=2", SMALL),
-    passes("bits that flip often", ",fault=flip,rate=1e-4,seed=4", STEPPED),
-    passes("a lost byte", ",fault=drop,byte=50000", STEPPED),
-    passes("a lost greeting", ",fault=drop,packet=0,toward=board", STEPPED),
-    passes("a lost answer to the greeting", ",fault=drop,packet=0,toward=host", STEPPED),
-    passes("a lost packet of the tables", ",fault=drop,packet=15,toward=board", STEPPED),
-    passes("lost packets", ",fault=drop,packet=100", STEPPED),
-    passes("bytes that get lost", ",fault=drop,rate=5e-5,seed=4", STEPPED),
-    passes("a byte that comes twice", ",fault=duplicate,byte=50000,toward=host", STEPPED),
-    passes("bytes that come twice", ",fault=duplicate,rate=5e-5,seed=5", STEPPED),
+    passes("bits that flip often", ",fault=flip,rate=1e-4,seed=4", SMALL).stepped_on_sim(),
+    passes("a lost byte", ",fault=drop,byte=50000", SMALL).stepped_on_sim(),
+    passes("a lost greeting", ",fault=drop,packet=0,toward=board", SMALL).stepped_on_sim(),
+    passes("a lost answer to the greeting", ",fault=drop,packet=0,toward=host", SMALL).stepped_on_sim(),
+    passes("a lost packet of the tables", ",fault=drop,packet=15,toward=board", SMALL).stepped_on_sim(),
+    passes("lost packets", ",fault=drop,packet=100", SMALL).stepped_on_sim(),
+    passes("bytes that get lost", ",fault=drop,rate=5e-5,seed=4", SMALL).stepped_on_sim(),
+    passes("a byte that comes twice", ",fault=duplicate,byte=50000,toward=host", SMALL).stepped_on_sim(),
+    passes("bytes that come twice", ",fault=duplicate,rate=5e-5,seed=5", SMALL).stepped_on_sim(),
     passes("rows that get lost whole", ",fault=lose,rate=0.01,seed=8", SMALL),
-    passes("a packet that ends early", ",fault=truncate,packet=50,toward=host", STEPPED),
+    passes("a packet that ends early", ",fault=truncate,packet=50,toward=host", SMALL).stepped_on_sim(),
     passes("packets that end early", ",fault=truncate,rate=0.01,seed=6", SMALL),
 ];
 
 /// Links that stall for a while, deliver some things twice, or change their order, which costs time at most.
 pub const SLOW_LINKS: &[Scenario] = &[
-    passes("a packet that comes twice", ",fault=duplicate,packet=70", STEPPED),
-    passes("a greeting that comes twice", ",fault=duplicate,packet=0", STEPPED),
+    passes("a packet that comes twice", ",fault=duplicate,packet=70", SMALL).stepped_on_sim(),
+    passes("a greeting that comes twice", ",fault=duplicate,packet=0", SMALL).stepped_on_sim(),
     passes("packets that overtake each other", ",fault=reorder,rate=0.005,seed=7", SMALL),
-    passes("a tenth of a second of silence", ",fault=stall,seconds=0.1", STEPPED),
+    passes("a tenth of a second of silence", ",fault=stall,seconds=0.1", SMALL).stepped_on_sim(),
     passes("a second of silence", ",fault=stall,packet=90,seconds=1,toward=host", SMALL),
-    passes("three seconds of silence again and again", ",fault=stall,every=60000,seconds=3", STEPPED),
+    passes("three seconds of silence again and again", ",fault=stall,every=60000,seconds=3", SMALL)
+        .stepped_on_sim(),
 ];
 
 /// How a run ends over a link that spoils most of what it carries.
@@ -74,8 +77,6 @@ pub const HOPELESS_LINKS: &[Scenario] = &[
 ];
 
 const SMALL: &[&str] = &["--width", "128", "--height", "16"];
-/// Without a burst, which takes the simulated board as long as all the rest, where the link has done before what is tried.
-const STEPPED: &[&str] = &["--width", "128", "--height", "16", "--at-speed", "0"];
 
 const fn passes(name: &'static str, options: &'static str, arguments: &'static [&'static str]) -> Scenario {
     super::passes(name, options, arguments).on(On::OwnWire)
