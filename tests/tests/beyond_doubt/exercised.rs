@@ -104,6 +104,31 @@ fn a_stuck_bit_of_the_centre_goes_unseen_exactly_where_the_pass_names_it() {
     assert!((8..12).all(|bit| verdict(bit, 0) == Verdict::Pass));
 }
 
+/// A lens so weak that the low bits of the centre change no sample, and one so weak that none does.
+#[test]
+fn a_centre_that_changes_nothing_was_not_exercised() {
+    let vary = Vary { centre: true, depth: false };
+    for (radius, some_show) in [(3000.0, true), (1e6, false)] {
+        let plan = streamed(System { radius, ..SYSTEM }.plan()).varying(vary);
+        let sound = judge_by_plan(&plan, open("mock"));
+        let named = sound.not_exercised.iter().find_map(|part| match part {
+            NotExercised::CentreBits { bits } => Some(bits),
+            _ => None,
+        });
+        let named = named.unwrap();
+        let is_seen = |bit: usize, value: u32| {
+            let fault = format!("mock,fault=stuck-centre,bit={bit},value={value}");
+            judge_by_plan(&plan, open(&fault)).verdict() == Verdict::Fail
+        };
+        for bit in 0..9 {
+            assert_eq!(named.contains(&bit), !(is_seen(bit, 0) && is_seen(bit, 1)), "bit {bit} of {radius}");
+        }
+        let ignoring = judge_by_plan(&plan, open("mock,fault=centre-ignored")).verdict();
+        assert_eq!(ignoring, if some_show { Verdict::Fail } else { Verdict::Pass }, "{radius}: {named:?}");
+        assert_eq!(named.len() < 12, some_show, "{radius}: {named:?}");
+    }
+}
+
 #[test]
 fn a_board_that_ignores_the_centre_is_found_where_the_centre_varies() {
     let (plan, ignoring) = (streamed(SYSTEM.plan()), "mock,fault=centre-ignored");

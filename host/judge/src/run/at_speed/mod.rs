@@ -23,6 +23,7 @@ use halfrow_model::Geometry;
 use halfrow_protocol::message::{BurstMode, Capabilities};
 
 use super::findings::exercised::Exercised;
+use super::findings::levels::Levels;
 use super::findings::{During, End};
 use super::frames::observations::Observations;
 use super::plan::parts::Part;
@@ -178,19 +179,21 @@ impl Run<'_> {
             plan.frames = 2;
             let watched = self.judge_frames(&plan, tables).map_err(in_corner)?;
             if watched.paused == 0 {
-                self.note_levels(&plan, tables, seen);
+                self.note_shown(&plan, tables, seen);
                 exercised.corners.extend_from_slice(tables);
             }
         }
         Ok(corners.len() as u32)
     }
 
-    /// Notes the samples of the frames of `plan`, one for each bank.
-    fn note_levels(&self, plan: &BurstPlan, tables: &[Generation], seen: &mut Observations) {
+    /// Notes what the frames of `plan` show, one for each bank.
+    fn note_shown(&self, plan: &BurstPlan, tables: &[Generation], seen: &mut Observations) {
         for (n, generation) in (0..).zip(tables) {
             let input = plan.content(n).frame(generation.tables.geometry(), self.plan.phase);
             if let Ok(expected) = correct(&generation.tables, &generation.kernel, &input) {
-                seen.levels.note(&input, &expected);
+                let Generation { tables, kernel, .. } = generation;
+                let centre = Levels::of_centre(tables, kernel, &input, &expected, seen.shown.centre);
+                seen.shown.note(&input, &expected, centre);
             }
         }
     }

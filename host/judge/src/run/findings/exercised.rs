@@ -3,60 +3,16 @@
 
 use std::collections::BTreeSet;
 
-use halfrow_model::{Frame, NODES, RowFactor, Source, TAP_NAMES, TableSet};
+use halfrow_model::{NODES, RowFactor, Source, TAP_NAMES, TableSet};
 
 use crate::board::{BoardNature, grids};
 use crate::result::{CheckName, Identity, NotExercised};
 use crate::run::Findings;
+use crate::run::findings::levels::{Levels, Shown};
 use crate::run::frames::observations::Observations;
 use crate::run::plan::Generation;
 use crate::run::rules::MOST_FILLED;
 use crate::run::steps::Run;
-
-/// The levels that bits have had: `ones` marks each bit that was ever 1, `zeros` each that was ever 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Levels {
-    ones: u32,
-    zeros: u32,
-}
-
-impl Levels {
-    fn of(values: impl IntoIterator<Item = u32>) -> Self {
-        values.into_iter().fold(Self::default(), |levels, value| Self {
-            ones: levels.ones | value,
-            zeros: levels.zeros | !value,
-        })
-    }
-
-    /// Adds the samples of a frame, unless they could change nothing.
-    fn note(&mut self, frame: &Frame) {
-        if !self.constant(frame.depth().bits()).is_empty() {
-            let Self { ones, zeros } = Self::of(frame.samples().iter().copied().map(u32::from));
-            self.ones |= ones;
-            self.zeros |= zeros;
-        }
-    }
-
-    /// Those of the lowest `bits` bits that have not had both levels.
-    fn constant(self, bits: u32) -> Vec<usize> {
-        (0..bits).filter(|bit| (self.ones & self.zeros) >> bit & 1 == 0).map(|bit| bit as usize).collect()
-    }
-}
-
-/// The levels that the bits of samples have had.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct SampleLevels {
-    input: Levels,
-    output: Levels,
-}
-
-impl SampleLevels {
-    /// Adds a frame that went in, and the frame that should have come out.
-    pub(crate) fn note(&mut self, input: &Frame, output: &Frame) {
-        self.input.note(input);
-        self.output.note(output);
-    }
-}
 
 /// What bursts exercised of a board, and what they left.
 #[derive(Default)]
@@ -79,7 +35,7 @@ impl Run<'_> {
         let generations: Vec<_> = used.iter().chain(&corners).collect();
         let identity = board.identity.as_ref();
         let of_frames =
-            identity.map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
+            identity.map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.shown));
         let has_grid = generations.iter().any(|generation| generation.tables.shape().is_some());
         let no_grid = identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
         let untried = !checks.has_passed(CheckName::Rules);
@@ -109,7 +65,7 @@ fn used_of(generation: &Generation, seen: &Observations, whole: &[u8]) -> Option
 }
 
 /// What frames that were corrected with `generations` did not exercise of `board`.
-fn not_exercised(board: &Identity, generations: &[&Generation], samples: SampleLevels) -> Vec<NotExercised> {
+fn not_exercised(board: &Identity, generations: &[&Generation], shown: Shown) -> Vec<NotExercised> {
     if generations.is_empty() {
         return Vec::new();
     }
@@ -117,15 +73,15 @@ fn not_exercised(board: &Identity, generations: &[&Generation], samples: SampleL
     let depth = board.depths.iter().copied().max().unwrap_or_default().into();
     let (nodes, taps) = unused_of_kernel(generations, board.taps);
     [
-        some(samples.input.constant(depth), |bits| NotExercised::InputBits { bits }),
-        some(samples.output.constant(depth), |bits| NotExercised::OutputBits { bits }),
+        some(shown.input.constant(depth), |bits| NotExercised::InputBits { bits }),
+        some(shown.output.constant(depth), |bits| NotExercised::OutputBits { bits }),
         some(column_lines(&tables, board), |lines| NotExercised::ColumnAddress { lines }),
         some(line_memory_lines(&tables, board), |lines| NotExercised::LineMemoryAddress { lines }),
         some(entry_lines(&tables, board), |lines| NotExercised::RowTableAddress { lines }),
         some(factor_bits(&tables), |bits| NotExercised::RowFactorBits { bits }),
         some(nodes, |nodes| NotExercised::KernelNodes { nodes }),
         some(taps, |taps| NotExercised::Taps { taps }),
-        centre(&tables, board),
+        centre(&tables, board, shown.centre),
         some(unused_depths(&tables, board), |bits| NotExercised::Depths { bits }),
     ]
     .into_iter()
@@ -224,13 +180,14 @@ fn nodes_used(tables: &TableSet) -> [bool; NODES] {
     used
 }
 
-fn centre(tables: &[&TableSet], board: &Identity) -> Option<NotExercised> {
+/// The bits of C that may be stuck unseen, of which `shown` have shown themselves.
+fn centre(tables: &[&TableSet], board: &Identity, shown: Levels) -> Option<NotExercised> {
     let centres: BTreeSet<_> = tables.iter().map(|tables| tables.geometry().centre2()).collect();
     if centres.len() == 1 {
         return centres.first().map(|&centre2| NotExercised::OneCentre { centre2 });
     }
     let bits = lines(2 * usize::from(board.max_width) - 1).len() as u32;
-    some(Levels::of(centres).constant(bits), |bits| NotExercised::CentreBits { bits })
+    some(shown.constant(bits), |bits| NotExercised::CentreBits { bits })
 }
 
 fn unused_depths(tables: &[&TableSet], board: &Identity) -> Vec<u32> {
@@ -240,7 +197,7 @@ fn unused_depths(tables: &[&TableSet], board: &Identity) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, Phase};
+    use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase};
 
     use super::*;
     use crate::result::GridsReport;
@@ -278,11 +235,12 @@ mod tests {
     }
 
     fn found(taps: u8, generations: &[&Generation]) -> Vec<NotExercised> {
-        let mut samples = SampleLevels::default();
-        // Both levels of every bit.
+        let mut shown = Shown::default();
+        // Both levels of every bit of samples, and each bit of every centre.
         let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, [0, 4095].repeat(32)).unwrap();
-        samples.note(&frame, &frame);
-        not_exercised(&board(taps), generations, samples)
+        let centres = generations.iter().map(|generation| generation.tables.geometry().centre2());
+        shown.note(&frame, &frame, Levels::of(centres));
+        not_exercised(&board(taps), generations, shown)
     }
 
     fn taps(names: &[&str]) -> NotExercised {
@@ -347,7 +305,7 @@ mod tests {
         let grids = GridsReport { entries: 4096, least_blanking: 32, width: 192 };
         let roomy = Identity { grids: Some(grids), ..board(7) };
         let unmoved = generation(127, Interpolant::Hermite, |_| 1 << 24);
-        let parts = not_exercised(&roomy, &[&unmoved], SampleLevels::default());
+        let parts = not_exercised(&roomy, &[&unmoved], Shown::default());
         assert!(parts.contains(&NotExercised::RowTableAddress { lines: (0..12).collect() }), "{parts:?}");
     }
 
@@ -380,15 +338,15 @@ mod tests {
     fn bits_of_samples_count_on_either_side_of_the_board() {
         let frame =
             |samples: [u16; 2]| Frame::new(64, BitDepth::Twelve, Phase::Grbg, samples.repeat(32)).unwrap();
-        let mut samples = SampleLevels::default();
-        samples.note(&frame([0x0f5, 0x005]), &frame([0, 0xfff]));
+        let mut shown = Shown::default();
+        shown.note(&frame([0x0f5, 0x005]), &frame([0, 0xfff]), Levels::default());
         let generation = generation(127, Interpolant::Linear, |_| 1 << 23);
-        let found = not_exercised(&board(7), &[&generation], samples);
+        let found = not_exercised(&board(7), &[&generation], shown);
         assert_eq!(found[0], NotExercised::InputBits { bits: vec![0, 1, 2, 3, 8, 9, 10, 11] });
         assert!(!found.iter().any(|part| matches!(part, NotExercised::OutputBits { .. })));
-        samples.note(&frame([0, 0xfff]), &frame([7, 7]));
+        shown.note(&frame([0, 0xfff]), &frame([7, 7]), Levels::default());
         assert!(!matches!(
-            not_exercised(&board(7), &[&generation], samples)[0],
+            not_exercised(&board(7), &[&generation], shown)[0],
             NotExercised::InputBits { .. }
         ));
     }

@@ -5,6 +5,7 @@ pub(super) mod conclude;
 mod end;
 pub(super) mod exercised;
 pub(super) mod finished;
+pub(super) mod levels;
 
 use std::mem;
 

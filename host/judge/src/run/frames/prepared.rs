@@ -9,6 +9,7 @@ use halfrow_model::{CorrectError, Frame, FrameError, Geometry};
 use crate::board::NumberedFrame;
 use crate::reference::correct;
 use crate::result::{little_endian, sha256};
+use crate::run::findings::levels::Levels;
 use crate::run::plan::{Generation, Plan, ScheduledFrame, Segment};
 use crate::run::threads::{self, NoThread};
 
@@ -21,6 +22,8 @@ pub(crate) struct Prepared {
     pub(crate) sha256: String,
     pub(crate) input: Arc<Frame>,
     pub(crate) expected: Arc<Frame>,
+    /// What `expected` shows of the optical centre, beyond what earlier frames do.
+    pub(crate) centre: Levels,
 }
 
 /// A frame that could not be made ready.
@@ -51,9 +54,11 @@ pub(crate) fn ahead<'scope, 'run: 'scope>(
         let _entered = span.entered();
         let of_segment = |segment: &'run Segment| segment.frames.iter().map(move |frame| (frame, segment));
         let mut frames = schedule.iter().flat_map(of_segment);
+        let mut shown = Levels::default();
         // After a frame that cannot be made no other is sent.
         let _ = frames.try_for_each(|(frame, segment)| {
-            let prepared = Prepared::new(plan, frame, &segment.geometry, &generations);
+            let prepared = Prepared::new(plan, frame, &segment.geometry, &generations, shown);
+            shown = prepared.as_ref().map_or(shown, |prepared| shown.and(prepared.centre));
             let is_last = prepared.is_err();
             sender.send(prepared).ok().filter(|()| !is_last)
         });
@@ -67,6 +72,7 @@ impl Prepared {
         frame: &ScheduledFrame,
         geometry: &Geometry,
         generations: &[Generation],
+        shown: Levels,
     ) -> Result<Self, PrepareError> {
         let name = frame.source.name();
         let own = generations.iter().find(|generation| generation.number == frame.generation);
@@ -83,6 +89,7 @@ impl Prepared {
             number: frame.number,
             generation: frame.generation,
             sha256: sha256(input.rows().map(little_endian)),
+            centre: Levels::of_centre(tables, kernel, &input, &expected, shown),
             input,
             expected: expected.into(),
         })

@@ -171,8 +171,8 @@ impl<'a> RowJudge<'a> {
 
     fn frame_done(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
-        let Prepared { name, number, generation, sha256, input, expected } = prepared;
-        self.seen.levels.note(&input, &expected);
+        let Prepared { name, number, generation, sha256, input, expected, centre } = prepared;
+        self.seen.shown.note(&input, &expected, centre);
         let (is_whole, budget) = (rows >= expected.height(), self.options.evidence_bytes);
         let offered = self.offered(&name, &expected, is_whole, comparison.differences > 0);
         if is_whole || offered.is_wanted {
@@ -276,6 +276,7 @@ mod tests {
 
     use super::*;
     use crate::progress::Silent;
+    use crate::run::findings::levels::Levels;
 
     const HEIGHT: usize = 4;
 
@@ -283,7 +284,15 @@ mod tests {
         let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![number; 64 * HEIGHT]).unwrap();
         let frame = Arc::new(frame);
         let (name, sha256) = (String::new(), String::new());
-        Prepared { name, number, generation: 2, sha256, input: Arc::clone(&frame), expected: frame }
+        Prepared {
+            name,
+            number,
+            generation: 2,
+            sha256,
+            input: Arc::clone(&frame),
+            expected: frame,
+            centre: Levels::default(),
+        }
     }
 
     fn options() -> JudgeOptions {
