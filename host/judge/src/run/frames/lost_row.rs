@@ -78,6 +78,11 @@ impl Run<'_> {
     fn replay(&mut self, frame: &ScheduledFrame, geometry: &Geometry) -> Result<Replay, BoardError> {
         let before = self.board.tally();
         self.board.drop_rows()?;
+        // That forgets a commit whose frame has not begun. The tables stay.
+        let generations = &self.generations;
+        if let Some(tables) = generations.iter().find(|it| it.number == frame.generation).cloned() {
+            self.commit_uploaded(&tables, frame.number, geometry.height())?;
+        }
         self.board.status(true)?;
         let first_row = self.board.acknowledged();
         let Ok(input) = self.plan.render(frame, geometry) else { return Ok(Replay::Troubled) };

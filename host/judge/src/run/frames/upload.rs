@@ -38,9 +38,7 @@ impl Run<'_> {
         let uploaded = Finding::TablesUploaded { entries, nodes, generation: *number };
         self.findings.checks.passed(CheckName::Upload, uploaded);
         let ports = self.check_read_back(CheckName::ReadBack, Bank::Shadow, generation)?;
-        let upper = generation.upper(rows);
-        let committed = upper.as_ref().map_or(tables, |upper| &upper.tables);
-        self.board.commit(committed, kernel, first_frame, *number).map_err(|error| match error {
+        self.commit_uploaded(generation, first_frame, rows).map_err(|error| match error {
             BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::TableCrc => {
                 End::failed(CheckName::ReadBack, Finding::CommitCrcWrong {})
             }
@@ -48,6 +46,19 @@ impl Run<'_> {
         })?;
         self.findings.checks.passed(CheckName::ReadBack, Finding::TablesReadBack { ports });
         Ok(())
+    }
+
+    /// Commits a generation whose tables the board has, to be used from `first_frame` on, for frames of `rows` rows.
+    pub(super) fn commit_uploaded(
+        &mut self,
+        generation: &Generation,
+        first_frame: u16,
+        rows: usize,
+    ) -> Result<(), BoardError> {
+        let Generation { number, tables, kernel } = generation;
+        let upper = generation.upper(rows);
+        let committed = upper.as_ref().map_or(tables, |upper| &upper.tables);
+        self.board.commit(committed, kernel, first_frame, *number)
     }
 
     /// Compares the CRCs of both tables through every port, and returns the number of ports. A table with another CRC is
