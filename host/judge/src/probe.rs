@@ -1,6 +1,6 @@
 //! Asks a device whether it is a board. This sends a greeting to it, whatever the device is.
 
-use crate::board::{Board, BoardError, Capabilities, OpenOptions, Received};
+use crate::board::{Board, BoardError, Capabilities, OpenOptions, Received, WhenHeld};
 use crate::link::discovery::Answer;
 use crate::link::{self, Class, OpenError};
 use crate::result::Problem;
@@ -15,7 +15,7 @@ pub fn probe(target: &Target) -> Answer {
         Ok(candidate) => candidate,
         Err(error) => return not_opened(&error),
     };
-    let options = OpenOptions { polite: true, ..OpenOptions::default() };
+    let options = OpenOptions { when_held: WhenHeld::Leave, ..OpenOptions::default() };
     let greeted = Board::with(candidate.link, &options, |board| board.capabilities.clone());
     match greeted.map_err(BoardError::from) {
         Ok(Capabilities { name, datapath, .. }) => Answer::Board { name, datapath },

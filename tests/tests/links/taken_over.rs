@@ -5,11 +5,13 @@ use std::time::Duration;
 
 use halfrow::link::{Candidate, Link, LinkError, OpenError, SerialError};
 use halfrow::progress::Silent;
-use halfrow::result::Report;
+use halfrow::result::{Finding, Report};
 use halfrow::run::{RunOptions, verify};
 use halfrow::verdict::Cause;
-use halfrow_protocol::message::{Hello, Request};
-use halfrow_protocol::{Encoder, Header, Kind, VERSION};
+use halfrow_mock::Options;
+use halfrow_protocol::message::{Hello, Request, RowOut};
+use halfrow_protocol::{Encoder, Header, Kind, Reply, VERSION};
+use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::come_to_an_end;
 use halfrow_tests::system::{System, open};
 
@@ -21,6 +23,8 @@ struct Line {
     link: Box<dyn Link>,
     /// Bytes that the first host sends until the other one takes the board over.
     left: usize,
+    /// Whether the first host's end is of the kind that only one program can open.
+    is_exclusive: bool,
 }
 
 impl Line {
@@ -76,6 +80,10 @@ impl Link for End {
         None
     }
 
+    fn is_exclusive(&self) -> bool {
+        self.line().is_exclusive
+    }
+
     fn name(&self) -> String {
         "a line that two hosts reach".to_owned()
     }
@@ -88,18 +96,59 @@ fn judged(candidate: Candidate, take_over: bool) -> Report {
 
 #[test]
 fn a_board_that_was_taken_over_is_left_to_who_took_it() {
-    for take_over in [false, true] {
+    for (take_over, is_exclusive) in [(false, false), (true, false), (false, true)] {
         for after in [300, 3_000, 9_000] {
             let candidate = open("mock");
-            let end = End(Arc::new(Mutex::new(Line { link: candidate.link, left: after })));
+            let end = End(Arc::new(Mutex::new(Line { link: candidate.link, left: after, is_exclusive })));
             let link = Box::new(end.clone());
             let shared = Candidate { link, ..candidate };
             let report = judged(shared.reopened_by(move || Ok::<_, OpenError>(end.clone())), take_over);
-            let what = format!("take over: {take_over}, after {after}: {}", report.headline());
+            let what = format!(
+                "take over: {take_over}, exclusive: {is_exclusive}, after {after}: {}",
+                report.headline()
+            );
             assert_eq!(report.cause, Cause::Busy, "{what}");
             assert!(report.headline().contains("another host holds the board"), "{what}");
             assert!(report.link.reconnections.is_empty(), "{what}");
         }
+    }
+}
+
+/// A greeting like this one, of another host that takes the board over.
+fn of_another_host(greeting: &Passing) -> Passing {
+    let mut payload = greeting.payload.clone();
+    // Nonce and host, and the byte that says whether the host takes the board over (WIRE.md, 00).
+    payload[..8].iter_mut().for_each(|byte| *byte = !*byte);
+    payload[10] = 1;
+    Passing { payload, ..greeting.clone() }
+}
+
+/// All rows are wrong, and the first CONFIGURE comes twice, so that everything is looked at again.
+#[test]
+fn a_board_that_was_taken_over_before_a_second_look_is_left_to_who_took_it() {
+    for (take_over, is_exclusive) in [(false, false), (true, false), (false, true)] {
+        let (mut greetings, mut configured) = (0, false);
+        let alter = move |toward, packet: Passing| {
+            let is_sent = |kind| toward == Toward::Board && packet.is(kind);
+            greetings += usize::from(is_sent(Kind::Hello));
+            let is_doubled = is_sent(Kind::Configure) && !std::mem::replace(&mut configured, true);
+            match packet.reply() {
+                _ if is_sent(Kind::Hello) && greetings == 2 => vec![of_another_host(&packet), packet],
+                _ if is_doubled => vec![packet.clone(), packet],
+                Some(Reply::RowOut(row)) => {
+                    let packed: Vec<_> = row.packed.iter().map(|byte| byte ^ 1).collect();
+                    vec![packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))]
+                }
+                _ => vec![packet],
+            }
+        };
+        let candidate = Altered::new(&Options::default(), alter).candidate();
+        let end = End(Arc::new(Mutex::new(Line { link: candidate.link, left: 0, is_exclusive })));
+        let report = judged(Candidate { link: Box::new(end), ..candidate }, take_over);
+        let what = format!("take over: {take_over}, exclusive: {is_exclusive}: {}", report.headline());
+        assert_eq!(report.cause, Cause::Busy, "{what}");
+        let Finding::SecondLookBrokenOff(broken_off) = &report.finding else { panic!("{what}") };
+        assert_eq!(broken_off.reason.code(), "board-held", "{what}");
     }
 }
 

@@ -18,7 +18,7 @@ use crate::pool::{self, PoolError};
 use crate::settings::Settings;
 use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
-use halfrow::board::{OpenOptions, Stop};
+use halfrow::board::{OpenOptions, Stop, WhenHeld};
 use halfrow::link::{self, Candidate, Recording, kinds};
 use halfrow::run::{AtSpeed, Build, JUDGED, Plan};
 use halfrow::target::{BoardKind, Target, TargetError};
@@ -165,7 +165,7 @@ impl BoardArguments {
 
     pub(crate) fn open_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
         Ok(OpenOptions {
-            take_over: self.take_over,
+            when_held: if self.take_over { WhenHeld::Take } else { WhenHeld::TakeFromKilled },
             retry_limit: self.retry_limit(settings),
             stop: self.stop(settings)?.link_limit(self.timeout(settings)?),
             ..OpenOptions::default()

@@ -24,7 +24,7 @@ use crate::document::result_text;
 use crate::exit::Exit;
 use crate::progress::ChildOutput;
 use crate::{console, pool, signals};
-use halfrow::board::{Board, BoardError, OpenOptions, Stop};
+use halfrow::board::{Board, BoardError, OpenOptions, Stop, WhenHeld};
 use halfrow::link::{self, Class};
 use halfrow::result::BoardReport;
 use halfrow::target::{BoardKind, Target};
@@ -187,7 +187,7 @@ fn greet(target: &Target, stop: Stop) -> Result<BoardReport, (Failure, Next)> {
         let next = again(error.class() != Class::Call);
         (error.into(), next)
     })?;
-    let options = OpenOptions { polite: true, stop, ..OpenOptions::default() };
+    let options = OpenOptions { when_held: WhenHeld::Leave, stop, ..OpenOptions::default() };
     let report = |board: &mut Board| BoardReport::of(board, candidate.kind, candidate.target);
     Board::with(candidate.link, &options, report).map_err(|failed| {
         let is_cut = matches!(failed.error, BoardError::Timeout { .. });

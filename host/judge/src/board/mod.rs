@@ -10,6 +10,7 @@ pub mod deadlines;
 mod error;
 mod lateness;
 mod legal;
+mod open_options;
 mod received;
 mod response;
 mod rows;
@@ -31,7 +32,7 @@ use halfrow_protocol::{Kind, Packet, VERSION};
 use answer::take_reply;
 use conversation::Conversation;
 use counted::Counted;
-use deadlines::{RetryLimit, Step};
+use deadlines::Step;
 use sent_requests::Outgoing;
 
 use crate::link::Link;
@@ -40,6 +41,7 @@ pub(crate) use conduct::Misconduct;
 pub(crate) use counted::Miscount;
 pub use error::{BoardError, OpenFailed};
 pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
+pub use open_options::{OpenOptions, WhenHeld};
 pub use received::{Had, Received};
 pub(crate) use response::{CameAgain, Response};
 pub(crate) use rows::{Given, Unjudged, Unreturned};
@@ -53,29 +55,6 @@ pub use tally::Tally;
 pub use halfrow_protocol::message::{
     Bank, BoardNature, Bursts, Capabilities, Datapath, RefusalCode, Status, Table, UnknownDatapath, Welcome,
 };
-
-/// How a session is opened. The default draws a nonce, a host number and a sequence number, so that sessions differ.
-#[derive(Clone, Debug)]
-pub struct OpenOptions {
-    /// The session's nonce, drawn at random.
-    pub nonce: u32,
-    /// The number of this host, drawn at random once per run of the program.
-    pub host: u32,
-    /// The sequence number before that of the first packet, drawn at random too. A refusal names no nonce, so one that is still
-    /// under way to an earlier program must not match by its number.
-    pub sequence: u16,
-    /// Take the board from whoever holds it.
-    pub take_over: bool,
-    /// Leave the board to its holder even if this program is the only one on the link: a board can have two links.
-    pub polite: bool,
-    /// After every stream, and after every request that was repeated, ask the board how many packets it received. This tells a
-    /// packet that came twice from a lost one.
-    pub counts: bool,
-    /// How many packets may be sent again.
-    pub retry_limit: RetryLimit,
-    /// What ends the run early.
-    pub stop: Stop,
-}
 
 /// When the core is fed samples. The default is as soon as the board can take them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -332,14 +311,14 @@ fn close(conversation: &mut Conversation) {
     }
 }
 
-/// Opens a session. If this program is the only one on the link, nobody is cut off by taking over: the run that holds the board
-/// was killed.
+/// Opens a session.
 fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
     let sent = conversation.tally.packets_out;
+    let takes_from_killed = options.when_held == WhenHeld::TakeFromKilled && conversation.is_exclusive();
     let greeted = match greet(conversation, options) {
-        Err(BoardError::Held { .. }) if conversation.is_exclusive() && !options.polite => {
+        Err(BoardError::Held { .. }) if takes_from_killed => {
             tracing::warn!("the board is held by a run that was killed, and is taken over");
-            greet(conversation, &OpenOptions { take_over: true, ..options.clone() })
+            greet(conversation, &OpenOptions { when_held: WhenHeld::Take, ..options.clone() })
         }
         greeted => greeted,
     };
@@ -356,7 +335,7 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
         host: options.host,
         version_min: VERSION,
         version_max: VERSION,
-        take_over: options.take_over,
+        take_over: options.when_held == WhenHeld::Take,
     };
     conversation.queue_zeros(2);
     let request = Request::Hello(hello);
@@ -366,7 +345,7 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
         Reply::Hello(welcome) => Some(welcome),
         _ => None,
     });
-    match welcome.map_err(|error| not_greeted(error, options.take_over))? {
+    match welcome.map_err(|error| not_greeted(error, hello.take_over))? {
         welcome @ Welcome { version: VERSION, session: 1.., .. } => Ok(welcome),
         Welcome { version: VERSION, .. } => Err(BoardError::NotABoard),
         Welcome { version, .. } => Err(BoardError::Version { board: version.into(), ours: VERSION }),

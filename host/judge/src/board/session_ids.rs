@@ -1,8 +1,5 @@
 //! Numbers that a session draws at random.
 
-use super::deadlines::RetryLimit;
-use super::{OpenOptions, Stop};
-
 /// Numbers drawn at random, which tell a session's packets from those of another one. The default draws them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct SessionIds {
@@ -30,26 +27,5 @@ impl SessionIds {
 impl Default for SessionIds {
     fn default() -> Self {
         Self::draw()
-    }
-}
-
-impl From<SessionIds> for OpenOptions {
-    fn from(SessionIds { nonce, host, sequence }: SessionIds) -> Self {
-        Self {
-            nonce,
-            host,
-            sequence,
-            take_over: false,
-            polite: false,
-            counts: false,
-            retry_limit: RetryLimit::default(),
-            stop: Stop::default(),
-        }
-    }
-}
-
-impl Default for OpenOptions {
-    fn default() -> Self {
-        SessionIds::default().into()
     }
 }

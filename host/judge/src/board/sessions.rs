@@ -10,7 +10,7 @@ use super::counted::Counted;
 use super::deadlines::Step;
 use super::response::{Response, said};
 use super::sent_requests::Outgoing;
-use super::{Board, BoardError, OpenOptions, VERSION, greet, greet_or_take_over, is_for};
+use super::{Board, BoardError, OpenOptions, VERSION, WhenHeld, greet, greet_or_take_over, is_for};
 
 impl Board {
     /// Number of the open session.
@@ -19,23 +19,12 @@ impl Board {
     }
 
     /// Opens another session over the same link, with a nonce that no earlier one had. Whatever is still under way from the
-    /// earlier session is ignored.
+    /// earlier session is ignored. A host that has the board by now came later, and keeps it.
     ///
     /// # Errors
     /// [`BoardError`] like [`Self::open`].
     pub(crate) fn open_another_session(&mut self, nonce: u32) -> Result<(), BoardError> {
-        self.options.nonce = nonce;
-        self.conversation.leave_session();
-        self.welcome = greet_or_take_over(&mut self.conversation, &self.options)?;
-        Ok(())
-    }
-
-    /// The same if another host may have the board by now. Then that host keeps it.
-    ///
-    /// # Errors
-    /// Like [`Self::open_another_session`].
-    pub(crate) fn open_free_session(&mut self, nonce: u32) -> Result<(), BoardError> {
-        self.open_by(nonce, false)
+        self.open_by(nonce, WhenHeld::Leave)
     }
 
     /// The same after [`Self::take_over_as_another_host`]: this host takes the board back.
@@ -43,15 +32,14 @@ impl Board {
     /// # Errors
     /// Like [`Self::open_another_session`].
     pub(crate) fn take_back(&mut self, nonce: u32) -> Result<(), BoardError> {
-        self.open_by(nonce, true)
+        self.open_by(nonce, WhenHeld::Take)
     }
 
-    fn open_by(&mut self, nonce: u32, take_over: bool) -> Result<(), BoardError> {
-        let given = self.options.clone();
-        self.options = OpenOptions { take_over, polite: true, ..given.clone() };
-        let opened = self.open_another_session(nonce);
-        self.options = OpenOptions { nonce, ..given };
-        opened
+    fn open_by(&mut self, nonce: u32, when_held: WhenHeld) -> Result<(), BoardError> {
+        (self.options.nonce, self.options.when_held) = (nonce, when_held);
+        self.conversation.leave_session();
+        self.welcome = greet_or_take_over(&mut self.conversation, &self.options)?;
+        Ok(())
     }
 
     /// Sends the greeting of the open session once more, and continues in the session that the board names in its reply.
@@ -59,7 +47,7 @@ impl Board {
     /// # Errors
     /// Like [`Self::open_another_session`].
     pub(crate) fn greet_again(&mut self) -> Result<Welcome, BoardError> {
-        let options = OpenOptions { take_over: false, ..self.options.clone() };
+        let options = OpenOptions { when_held: WhenHeld::Leave, ..self.options.clone() };
         let conversation = &mut self.conversation;
         let before = conversation.tally;
         // An answer in another session must be heard too.

@@ -291,7 +291,7 @@ impl Rules<'_, '_> {
     }
 
     fn greet(&mut self) -> Result<(), BoardError> {
-        self.greet_by(Board::open_free_session)
+        self.greet_by(Board::open_another_session)
     }
 
     fn greet_by(&mut self, open: fn(&mut Board, u32) -> Result<(), BoardError>) -> Result<(), BoardError> {

@@ -7,7 +7,7 @@ pub(super) mod window;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use crate::board::{Board, BoardError, OpenFailed, OpenOptions, Tally};
+use crate::board::{Board, BoardError, OpenFailed, OpenOptions, Tally, WhenHeld};
 use crate::link::{Link, OpenError, Reopener};
 use crate::result::{CheckName, Finding, LinkReport, Problem, Reconnection};
 use crate::run::RunOptions;
@@ -51,7 +51,7 @@ impl Sessions {
             reopen,
             patience: options.reconnect,
             options: OpenOptions {
-                take_over: options.take_over,
+                when_held: if options.take_over { WhenHeld::Take } else { WhenHeld::TakeFromKilled },
                 counts: options.counts,
                 retry_limit: options.retry_limit,
                 stop: options.stop.clone().link_limit(options.timeout),
@@ -65,10 +65,10 @@ impl Sessions {
     }
 
     /// Opens the board at `link`, or at a reopened link if that one breaks. The board is taken over only now: a host that
-    /// takes it during the run came later, and is not thrown out.
+    /// has it later came later, and is not thrown out.
     pub(crate) fn open(&mut self, link: Box<dyn Link>) -> Result<Board, End> {
         let opened = self.open_first(link);
-        self.options.take_over = false;
+        self.options.when_held = WhenHeld::Leave;
         opened
     }
 
