@@ -32,10 +32,10 @@ pub struct Comparison {
     /// The bits in which any sample differs, at their places in a sample.
     #[serde(default)]
     pub bits: u16,
-    /// Differences in each row.
+    /// Differences in each row; empty where they are not kept.
     #[serde(with = "crate::result::counts_as_runs")]
     pub by_row: Vec<u32>,
-    /// Differences in each column.
+    /// Differences in each column; empty where they are not kept.
     #[serde(with = "crate::result::counts_as_runs")]
     pub by_column: Vec<u32>,
 }

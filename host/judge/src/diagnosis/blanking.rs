@@ -23,7 +23,7 @@ pub(super) fn suspect(case: &Case<'_>) -> Option<Suspect> {
     let rows: usize = close.iter().map(|frame| frame.comparison.differing_rows().len()).sum();
     // Gaps add to the least blanking, most often too little.
     let goes_on = after.first().is_some_and(|next| next.comparison.differences > 0);
-    let least = ROWS.min(wide.comparison.by_row.len() / 2) * close.len();
+    let least = ROWS.min(wide.height() / 2) * close.len();
     let is_told = named < right && wide.comparison.differences == 0 && rows >= least && goes_on;
     is_told.then_some(Suspect {
         defect: Defect::LeastBlankingTooSmall(NamedBlanking { named, right }),

@@ -24,7 +24,7 @@ pub(super) fn summary(witnesses: &Witnesses<'_>) -> Suspect {
 }
 
 fn rows(witnesses: &Witnesses<'_>, frames: &[&FrameReport]) -> Option<Extent> {
-    let height = frames.iter().map(|frame| frame.comparison.by_row.len()).max()?;
+    let height = frames.iter().map(|frame| frame.height()).max()?;
     extent(&witnesses.rows, height)
 }
 

@@ -94,7 +94,7 @@ fn check_case(check: &Check) -> TestCase {
 fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
     let comparison = &frame.comparison;
     let message = match comparison.differences {
-        0 => format!("{} of {} came back", frame.rows, count(comparison.by_row.len(), "row")),
+        0 => format!("{} of {} came back", frame.rows, count(frame.height(), "row")),
         some => {
             format!("{} of {} {}", grouped(some), count(comparison.samples, "sample"), verb(some, "differ"))
         }

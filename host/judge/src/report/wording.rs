@@ -325,7 +325,7 @@ pub fn soak_difference(difference: &SoakDifference) -> String {
 /// A frame's outcome. Under the verdict ERROR nothing is the board's fault.
 #[must_use]
 pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
-    let judged = frame.rows >= frame.comparison.by_row.len() && frame.comparison.samples > 0;
+    let judged = frame.rows == frame.height() && frame.comparison.samples > 0;
     match (report.verdict(), frame.comparison.differences) {
         (_, 0) if judged => Outcome::Passed,
         (Verdict::Fail, 0) if is_swallowed(report, frame) => Outcome::Failed,

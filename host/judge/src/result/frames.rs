@@ -65,6 +65,14 @@ pub struct FrameReport {
     pub seconds: f64,
 }
 
+impl FrameReport {
+    /// The rows that were streamed. Only a frame of which all came back may be without counts by row.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.rows.max(self.comparison.by_row.len())
+    }
+}
+
 /// The setting that a frame of its own tries and no other frame has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]

@@ -133,7 +133,7 @@ fn as_bright(kept: &Evidence) -> Cow<'_, Frame> {
 }
 
 fn came_out(frame: &FrameReport) -> String {
-    match frame.comparison.by_row.len().saturating_sub(frame.rows) {
+    match frame.height() - frame.rows {
         0 => "Board output".to_owned(),
         missing => {
             let rows = count(missing, "row");
