@@ -134,6 +134,26 @@ fn a_board_that_is_only_unusual_is_judged() {
     }
 }
 
+/// WIRE.md, tag 10: a host does not ask for bursts whose content it does not know.
+#[test]
+fn a_board_is_asked_for_no_bursts_of_unknown_content() {
+    let asked = Arc::new(AtomicBool::new(false));
+    let seen = Arc::clone(&asked);
+    let report = judge_each(&System::TINY, move |toward, packet| {
+        let is_of_bursts = [Kind::Burst, Kind::Records, Kind::Expect, Kind::Trap].map(|kind| packet.is(kind));
+        seen.fetch_or(toward == Toward::Board && is_of_bursts.contains(&true), Ordering::Relaxed);
+        match packet.reply() {
+            Some(Reply::Capabilities(mut board)) => {
+                board.bursts.iter_mut().for_each(|bursts| bursts.content = 2);
+                packet.saying(&Reply::Capabilities(board))
+            }
+            _ => packet,
+        }
+    });
+    assert_eq!(report.cause, Cause::Equal, "{}", report.headline());
+    assert!(!asked.load(Ordering::Relaxed));
+}
+
 /// What is changed in an answer to HELLO, and what is reported then.
 type Greeting = (fn(&mut Welcome), &'static str);
 

@@ -60,7 +60,7 @@ impl Rules<'_, '_> {
     fn without_meaning(&mut self) -> Result<(), End> {
         let span = Span { count: 0, ..FIRST_FACTOR };
         let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 1, shape: None };
-        let burst = self.run.board.capabilities.bursts.map(|bursts| Burst {
+        let burst = self.run.known_bursts().ok().map(|bursts| Burst {
             burst: 0,
             frames: 0,
             seed: 0,
