@@ -373,3 +373,28 @@ fn what_went_over_a_link_that_broke_for_good_counts_once() {
     };
     assert_eq!(sent(None), sent(Some(Duration::ZERO)));
 }
+
+/// The report on a run that keeps within a time, over a link that breaks at the first echo, by which the run chooses what to take.
+fn unplugged_while_choosing(reconnect: Option<Duration>) -> Report {
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let cut = Arc::clone(&is_cut);
+    let alter = move |_, packet: Passing| {
+        cut.fetch_or(packet.is(Kind::Echo), Ordering::Relaxed);
+        vec![packet]
+    };
+    let reopen: Reopener = Box::new(|| Ok(board(false)));
+    let candidate = Candidate { reopen: Some(reopen), ..breakable(alter, is_cut) };
+    let plan = Plan { within: Some(LIMIT), ..System::TINY.plan() };
+    let options = RunOptions { reconnect, ..RunOptions::default() };
+    verify(&plan, candidate, &options, &Silent).unwrap().report
+}
+
+#[test]
+fn a_board_that_goes_away_while_the_run_chooses_what_to_take_is_named_and_may_come_back() {
+    for (reconnect, verdict, times) in [(None, Verdict::Error, 0), (Some(LIMIT), Verdict::Pass, 1)] {
+        let report = unplugged_while_choosing(reconnect);
+        assert_eq!(report.verdict(), verdict, "{}", report.headline());
+        assert_eq!(report.link.reconnections.len(), times);
+        assert!(report.board.identity.is_some());
+    }
+}

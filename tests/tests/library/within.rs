@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use halfrow::progress::Silent;
-use halfrow::result::{CheckName, Report, WithinReport};
+use halfrow::result::{CheckName, Finding, Report, WithinReport};
 use halfrow::run::{AtSpeed, Misfit, Plan, RunOptions, Vary, WithinError, verify};
+use halfrow::target::BoardKind;
 use halfrow::verdict::Verdict;
 use halfrow_tests::system::{System, failed_check, open};
 
@@ -130,4 +131,13 @@ fn no_share_of_faults_is_told_of_a_board_that_they_were_not_measured_in() {
     let told = halfrow::report::wording::within(within(&report)).pop().unwrap();
     assert!(told.starts_with("how many faults this selection finds was not measured"), "{told}");
     assert!(told.ends_with("64 x 16"), "{told}");
+}
+
+/// What the board is does not depend on the time.
+#[test]
+fn a_board_that_is_not_the_required_one_is_said_to_be_so_however_short_the_time() {
+    let _alone = crate::RUNS.lock();
+    let options = RunOptions { require_hardware: true, ..RunOptions::default() };
+    let report = verify(&plan(0.2), open(SLOW), &options, &Silent).unwrap().report;
+    assert_eq!(report.finding, Finding::HardwareRequired { board: BoardKind::Mock });
 }

@@ -41,7 +41,7 @@ use crate::verdict::Cause;
 use findings::conclude::{self, Begun};
 use findings::{End, Findings};
 use frames::observations::Observations;
-use plan::{misfit as misfits, within};
+use plan::misfit as misfits;
 use sessions::Sessions;
 pub(crate) use steps::NotAllJudged;
 use steps::Run;
@@ -146,25 +146,18 @@ fn drive(
     progress.step(Step::OpenTheBoard);
     let mut board = sessions.open(link)?;
     tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
-    let chosen = match plan.within {
-        None => Ok(plan.clone()),
-        Some(limit) => within::choose(plan, limit, &mut board, findings),
+    let run = Run {
+        plan,
+        generations: plan.generations(&Build::of(&board.capabilities)),
+        board: &mut board,
+        sessions,
+        options,
+        progress,
+        findings,
+        bursts: 0,
+        counters_doubted: false,
     };
-    let end = chosen.and_then(|plan| {
-        let generations = plan.generations(&Build::of(&board.capabilities));
-        let mut run = Run {
-            plan: &plan,
-            board: &mut board,
-            sessions,
-            generations,
-            options,
-            progress,
-            findings,
-            bursts: 0,
-            counters_doubted: false,
-        };
-        run.all_steps(seen)
-    });
+    let end = run.all_steps(seen);
     sessions.note_end(&board);
     // Whatever happened, the next run must find the board free. A board that is gone need not be asked.
     let reachable = !matches!(&end, Err(end) if end.is_unreachable());

@@ -70,9 +70,16 @@ fn all_judged(schedule: &[Segment], judged: usize) -> Result<(), End> {
 
 impl Run<'_> {
     /// All steps that need an open board. Returns what a board that is right was not exercised in.
-    pub(super) fn all_steps(&mut self, seen: &mut Observations) -> Result<Vec<NotExercised>, End> {
+    pub(super) fn all_steps(mut self, seen: &mut Observations) -> Result<Vec<NotExercised>, End> {
         self.findings.note_identity(self.board);
         self.identity()?;
+        let Some(limit) = self.plan.within else { return self.looking_again(seen) };
+        let chosen = self.over_outages(|run| run.choose(limit))?;
+        Run { plan: &chosen, ..self }.looking_again(seen)
+    }
+
+    /// All steps from the link on, and again if a late packet may have caused what they end with.
+    fn looking_again(&mut self, seen: &mut Observations) -> Result<Vec<NotExercised>, End> {
         self.all_but_identity(seen).map_err(|found| match found {
             // A soak has already looked into each burst.
             found if self.findings.soak.is_some() => found,

@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use super::misfit::{Misfit, misfit};
+use super::misfit::Misfit;
 use super::parts::{Part, Selection};
 use super::prices::{Prices, Rates};
 use super::{AtSpeed, Plan};
-use crate::board::Board;
 use crate::coverage::{self, Faults, FaultsError};
 use crate::result::{CheckName, CoveragePoint, Problem, WithinPart, WithinReport};
-use crate::run::findings::{During, End, Findings};
+use crate::run::findings::{During, End};
+use crate::run::steps::Run;
 use crate::verdict::Cause;
 use crate::words::hertz;
 
@@ -61,45 +61,38 @@ pub enum WithinError {
     Faults(#[from] FaultsError),
 }
 
-/// Chooses what to take of `plan` on `board`, for the time `limit` on the link's clock.
-///
-/// # Errors
-/// [`End`] when the board does not answer, or the time does not suffice.
-pub(crate) fn choose(
-    plan: &Plan,
-    limit: Duration,
-    board: &mut Board,
-    findings: &mut Findings,
-) -> Result<Plan, End> {
-    // That a board cannot take the plan's tables is reported when it is identified.
-    if misfit(&plan.tables, &plan.kernel, &board.capabilities).is_some() {
-        return Ok(plan.clone());
-    }
-    let rates = Rates::of(board).during(CheckName::Link)?;
-    let capabilities = board.capabilities.clone();
-    let prices = Prices::new(plan, &capabilities, rates);
-    let kept = if board.bytes_per_second().is_some() { KEPT } else { KEPT_UNSURE };
-    let mut time = Time { seconds: limit.as_secs_f64(), spent: board.now().as_secs_f64(), kept };
-    // By a link's virtual clock choosing takes no time. By a real one it does, and so will choosing again.
-    let build = format!("{:08x}", board.welcome.build);
-    let tried = chosen(&prices, &build, time);
-    let took = board.now().as_secs_f64() - time.spent;
-    let chosen = if took > 0.0 {
-        time.spent += 2.0 * took + HOST;
-        chosen(&prices, &build, time)
-    } else {
-        tried
-    };
-    match chosen {
-        Ok((selection, report)) => {
-            findings.within = Some(report);
-            Ok(Plan { parts: Some(selection), ..plan.clone() })
-        }
-        Err(error) => {
-            let misfit = Misfit::Within(error);
-            let end = End::error(CheckName::Identity, Cause::Refused, Problem::of(&misfit));
-            findings.misfit = Some(misfit);
-            Err(end)
+impl Run<'_> {
+    /// Chooses what to take of the plan, for the time `limit` on the run's clock.
+    ///
+    /// # Errors
+    /// [`End`] when the board does not answer, or the time does not suffice.
+    pub(in crate::run) fn choose(&mut self, limit: Duration) -> Result<Plan, End> {
+        let rates = Rates::of(self.board).during(CheckName::Link)?;
+        let capabilities = self.board.capabilities.clone();
+        let prices = Prices::new(self.plan, &capabilities, rates);
+        let kept = if self.board.bytes_per_second().is_some() { KEPT } else { KEPT_UNSURE };
+        let mut time = Time { seconds: limit.as_secs_f64(), spent: self.clock().as_secs_f64(), kept };
+        // By a link's virtual clock choosing takes no time. By a real one it does, and so will choosing again.
+        let build = format!("{:08x}", self.board.welcome.build);
+        let tried = chosen(&prices, &build, time);
+        let took = self.clock().as_secs_f64() - time.spent;
+        let chosen = if took > 0.0 {
+            time.spent += 2.0 * took + HOST;
+            chosen(&prices, &build, time)
+        } else {
+            tried
+        };
+        match chosen {
+            Ok((selection, report)) => {
+                self.findings.within = Some(report);
+                Ok(Plan { parts: Some(selection), ..self.plan.clone() })
+            }
+            Err(error) => {
+                let misfit = Misfit::Within(error);
+                let end = End::error(CheckName::Identity, Cause::Refused, Problem::of(&misfit));
+                self.findings.misfit = Some(misfit);
+                Err(end)
+            }
         }
     }
 }

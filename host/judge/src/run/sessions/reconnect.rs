@@ -12,11 +12,13 @@ use crate::verdict::Cause;
 
 impl Run<'_> {
     /// Does `step`, and repeats it whenever the board went away during it and has come back.
-    pub(crate) fn over_outages(&mut self, step: impl Fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
-        while let Err(end) = step(self) {
-            self.come_back(end)?;
+    pub(crate) fn over_outages<T>(&mut self, step: impl Fn(&mut Self) -> Result<T, End>) -> Result<T, End> {
+        loop {
+            match step(self) {
+                Err(end) => self.come_back(end)?,
+                done => return done,
+            }
         }
-        Ok(())
     }
 
     /// Does `step`. Whenever the board went away during it, brings it back to where it was after `last`, and does it again.

@@ -91,7 +91,7 @@ impl Run<'_> {
     }
 
     /// The run's clock: the link's, plus the time of earlier links, which broke.
-    fn clock(&self) -> Duration {
+    pub(in crate::run) fn clock(&self) -> Duration {
         self.sessions.earlier() + self.board.now()
     }
 
