@@ -8,9 +8,10 @@ use halfrow_mock::Options;
 use halfrow_protocol::message::{FrameRecord, Records, Refusal, RefusalCode, RowOut};
 use halfrow_protocol::{Kind, Packet, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, judge_by_plan};
 
 use crate::conduct::fails;
+use crate::rules::plan;
 
 /// In the first session alone: in another one all would be right.
 #[test]
@@ -157,4 +158,38 @@ fn what_a_link_did_to_one_burst_casts_no_doubt_on_a_later_one() {
     let report = verify(&plan, board.candidate(), &RunOptions::default(), &Silent).unwrap().report;
     assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     assert_eq!(report.soak.map(|soak| soak.wrong), Some(1));
+}
+
+/// The link brings the first CONFIGURE twice. The board says once that it has not cleared a counter, and is then right about it, but
+/// wrong in every row until the next session.
+#[test]
+fn what_is_right_when_it_is_tried_again_leaves_no_certainty_behind() {
+    let (mut configured, mut slips, mut is_over) = (false, 0, false);
+    let alter = move |toward, packet: Passing| {
+        if toward == Toward::Board {
+            is_over |= slips > 1 && packet.is(Kind::Hello);
+            // STATUS clears with any number but 0; the rules send another one than 1.
+            let clears = packet.is(Kind::Status) && packet.payload.first().is_some_and(|&clear| clear > 1);
+            slips += usize::from(slips == 0 && clears);
+            let is_first = packet.is(Kind::Configure) && !std::mem::replace(&mut configured, true);
+            return is_first.then(|| packet.clone()).into_iter().chain([packet]).collect();
+        }
+        match packet.reply() {
+            // The first one tells the counters as they were.
+            Some(Reply::Status(mut status)) if slips == 1 && status.rows_in == 0 => {
+                slips += 1;
+                status.rows_in = 1;
+                vec![packet.saying(&Reply::Status(status))]
+            }
+            Some(Reply::RowOut(row)) if slips > 1 && !is_over => {
+                let mut packed = row.packed.to_vec();
+                packed[0] ^= 1;
+                vec![packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))]
+            }
+            _ => vec![packet],
+        }
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+    assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{:?}", report.finding);
+    assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
 }

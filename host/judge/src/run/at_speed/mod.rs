@@ -159,12 +159,12 @@ impl Run<'_> {
         let corners = corners::corners(&capabilities, self.plan.seed);
         for (place, tables) in (0..).zip(&corners) {
             let Some(active) = tables.first().map(|active| &active.tables) else { continue };
-            let in_corner = |end| match end {
-                End::Failed { check, finding, suspects } => {
-                    let (corner, found) = (Corner::from(active), Box::new(finding));
-                    End::Failed { check, finding: Finding::InCorner { corner, found }, suspects }
+            let in_corner = |mut end| {
+                if let End::Failed { finding, .. } = &mut end {
+                    let (corner, found) = (Corner::from(active), Box::new(finding.clone()));
+                    *finding = Finding::InCorner { corner, found };
                 }
-                error => error,
+                end
             };
             self.upload_corner(tables).map_err(in_corner)?;
             let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };

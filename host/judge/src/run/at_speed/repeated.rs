@@ -105,7 +105,7 @@ impl Run<'_> {
         let others = suspects.first().map_or(0, Suspect::others);
         let short = suspects.first().and_then(Suspect::shortfall);
         let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short };
-        End::Failed { check: CheckName::AtSpeed, finding, suspects }
+        End::suspecting(CheckName::AtSpeed, finding, suspects)
     }
 
     fn make_again(&mut self, plan: &BurstPlan, tables: &[Generation], n: u32) -> Result<Again, End> {

@@ -7,8 +7,8 @@ use crate::verdict::Cause;
 /// Why a run ended before its last step, or with a wrong board.
 #[derive(Clone, Debug)]
 pub(crate) enum End {
-    /// The board is wrong.
-    Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect> },
+    /// The board is wrong. No link can have caused it, whatever it did, if that is `beyond_links`.
+    Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect>, beyond_links: bool },
     /// It could not be judged.
     Error { check: CheckName, cause: Cause, finding: Finding, shown: Option<Shown> },
 }
@@ -50,7 +50,20 @@ impl End {
     }
 
     pub(crate) fn failed(check: CheckName, finding: Finding) -> Self {
-        Self::Failed { check, finding, suspects: Vec::new() }
+        Self::suspecting(check, finding, Vec::new())
+    }
+
+    /// The board is wrong, perhaps because of one of `suspects`.
+    pub(crate) fn suspecting(check: CheckName, finding: Finding, suspects: Vec<Suspect>) -> Self {
+        Self::Failed { check, finding, suspects, beyond_links: false }
+    }
+
+    /// The same, which no link can have caused if the board is wrong.
+    pub(crate) fn beyond_links(mut self) -> Self {
+        if let Self::Failed { beyond_links, .. } = &mut self {
+            *beyond_links = true;
+        }
+        self
     }
 
     /// The check that ended the run.
@@ -77,6 +90,11 @@ impl End {
 
     pub(crate) fn is_failed(&self) -> bool {
         matches!(self, Self::Failed { .. })
+    }
+
+    /// Whether no link can have caused it, whatever it did.
+    pub(crate) fn is_beyond_links(&self) -> bool {
+        matches!(self, Self::Failed { beyond_links: true, .. })
     }
 
     fn shown(&self) -> Option<Shown> {

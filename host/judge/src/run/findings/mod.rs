@@ -30,8 +30,6 @@ pub(crate) struct Attempt {
     pub(crate) doubt: Option<Doubt>,
     /// Whether some counters were not compared only because the board, unlike the host, says that its link is poor.
     pub(crate) leaves_counters_out: bool,
-    /// Whether something was found wrong that no link can cause, whatever else the link did.
-    pub(crate) beyond_links: bool,
     /// Whether a board came back that has no serial number to identify it.
     pub(crate) came_back_unnumbered: bool,
 }

@@ -106,6 +106,6 @@ impl Run<'_> {
             }
             None => Finding::TableCrcWrong {},
         };
-        End::Failed { check, finding, suspects }
+        End::suspecting(check, finding, suspects)
     }
 }

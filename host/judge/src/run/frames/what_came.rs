@@ -67,12 +67,11 @@ impl Run<'_> {
             return Ok(Finding::TablesUnused {});
         };
         let checked = self.check_read_back(CheckName::TablesAfter, Bank::Active, &last);
-        checked.map(|_| Finding::TablesUnchanged {}).map_err(|end| match end {
-            End::Failed { check, finding, suspects } => {
-                let finding = Finding::TablesChanged { found: Box::new(finding) };
-                End::Failed { check, finding, suspects }
+        checked.map(|_| Finding::TablesUnchanged {}).map_err(|mut end| {
+            if let End::Failed { finding, .. } = &mut end {
+                *finding = Finding::TablesChanged { found: Box::new(finding.clone()) };
             }
-            end => end,
+            end
         })
     }
 
@@ -91,8 +90,7 @@ impl Run<'_> {
         }
         // Tables that changed explain the differences better than their pattern does.
         if let Some(End::Failed { finding, suspects, .. }) = tables_after {
-            let (finding, suspects) = (finding.clone(), suspects.clone());
-            return Err(End::Failed { check: CheckName::Frames, finding, suspects });
+            return Err(End::suspecting(CheckName::Frames, finding.clone(), suspects.clone()));
         }
         let suspects = self.diagnose(seen);
         let finding = Finding::SamplesDiffer {
@@ -104,7 +102,7 @@ impl Run<'_> {
             others: suspects.first().map_or(0, Suspect::others),
             short: suspects.first().and_then(Suspect::shortfall),
         };
-        Err(End::Failed { check: CheckName::Frames, finding, suspects })
+        Err(End::suspecting(CheckName::Frames, finding, suspects))
     }
 
     fn diagnose(&self, seen: &Observations) -> Vec<Suspect> {
@@ -132,11 +130,8 @@ fn changed_on_entry(wrong: WrongEntry, differs: bool, is_every_row: bool) -> End
     }
     let defect = Defect::RowsChangedOnEntry { rows, first: row, frame, flipped };
     let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 1.0 }];
-    End::Failed {
-        check: CheckName::Frames,
-        finding: Finding::RowsEnteredChanged { rows, row, frame, flipped },
-        suspects,
-    }
+    let finding = Finding::RowsEnteredChanged { rows, row, frame, flipped };
+    End::suspecting(CheckName::Frames, finding, suspects)
 }
 
 fn latency(seen: &Observations) -> Result<Finding, End> {

@@ -78,15 +78,12 @@ impl Rules<'_, '_> {
     /// Tries `scenario` up to three times. A count or a session that is wrong each time is not due to late copies of
     /// requests: there are not that many. Wrong rows may be, through wrong tables.
     pub(super) fn always(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
-        let tried = self.thrice(scenario);
-        let is_of_requests = |end: &End| {
-            matches!(
-                end.finding(),
-                Finding::CounterWrong { .. } | Finding::RuleBroken { rule: Rule::NewSession, .. }
-            )
-        };
-        self.run.findings.attempt.beyond_links |= tried.as_ref().is_err_and(is_of_requests);
-        tried
+        self.thrice(scenario).map_err(|end| match end.finding() {
+            Finding::CounterWrong { .. } | Finding::RuleBroken { rule: Rule::NewSession, .. } => {
+                end.beyond_links()
+            }
+            _ => end,
+        })
     }
 
     /// The counters of rows may not go down through `act`.
@@ -134,11 +131,9 @@ impl Rules<'_, '_> {
     }
 
     /// `status`, which came after something that clears all counters, must have all of them 0.
-    pub(super) fn not_counted(&mut self, rule: Option<Rule>, status: &Status) -> Result<(), End> {
-        let of_new_rows = equal(rule, status, &MOVED_BY_NEW_ROWS.map(|counter| (counter, 0)));
+    pub(super) fn not_counted(&self, rule: Option<Rule>, status: &Status) -> Result<(), End> {
         // There was no new row, and no link can make one.
-        self.run.findings.attempt.beyond_links |= of_new_rows.is_err();
-        of_new_rows?;
+        equal(rule, status, &MOVED_BY_NEW_ROWS.map(|counter| (counter, 0))).map_err(End::beyond_links)?;
         let board = &self.run.board;
         let is_calm =
             status.damaged() == 0 && board.had_each_packet_once(status) && board.sent_nothing_again();

@@ -275,7 +275,7 @@ impl<'a, 'run> Rules<'a, 'run> {
                     others: first.others(),
                     short: first.shortfall(),
                 };
-                return Err(End::Failed { check: CheckName::Rules, finding, suspects });
+                return Err(End::suspecting(CheckName::Rules, finding, suspects));
             }
         }
         Err(other_row(rule, *row, *frame, differs.clone()))

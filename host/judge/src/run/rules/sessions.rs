@@ -61,7 +61,6 @@ impl Rules<'_, '_> {
             if !has_failed || !self.has_lost_power() {
                 return tried;
             }
-            self.run.findings.attempt.beyond_links = false;
         }
         scenario(self)
     }

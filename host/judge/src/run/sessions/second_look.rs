@@ -82,6 +82,9 @@ impl Run<'_> {
 
     /// Why the link may have caused `end`. That nothing is known about the link is no reason to doubt an error.
     pub(crate) fn doubt_of(&mut self, end: &End) -> Option<Doubt> {
+        if end.is_beyond_links() {
+            return None;
+        }
         let doubt = self.doubt(end.name())?;
         (end.is_failed() || doubt != Doubt::PacketsUncounted {}).then_some(doubt)
     }
@@ -89,9 +92,6 @@ impl Run<'_> {
     /// Why `check` may have found something although the board is sound: because it is not in the state that the host put
     /// it into in this session.
     fn doubt(&mut self, check: CheckName) -> Option<Doubt> {
-        if self.findings.attempt.beyond_links {
-            return None;
-        }
         if let Some(doubt) = self.findings.attempt.doubt.or(Doubt::of_requests(self.board)) {
             return Some(doubt);
         }

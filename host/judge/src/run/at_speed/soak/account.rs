@@ -138,20 +138,11 @@ impl Account {
     }
 
     /// The first difference, with the counts of all frames of the soak.
-    fn of_all_frames(&self, end: End) -> End {
-        match end {
-            End::Failed {
-                check,
-                finding: Finding::DiffersAtSpeed { first, repetition, suspect, others, short, .. },
-                suspects,
-            } => {
-                let (wrong, frames) = (counted(self.report.wrong), counted(self.report.frames));
-                let finding =
-                    Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short };
-                End::Failed { check, finding, suspects }
-            }
-            other => other,
+    fn of_all_frames(&self, mut end: End) -> End {
+        if let End::Failed { finding: Finding::DiffersAtSpeed { wrong, frames, .. }, .. } = &mut end {
+            (*wrong, *frames) = (counted(self.report.wrong), counted(self.report.frames));
         }
+        end
     }
 }
 
