@@ -1,8 +1,11 @@
 use std::fs;
 use std::path::Path;
 
+use halfrow::link::LineErrors;
 use halfrow::report::{self, ReportError, ReportFolder};
-use halfrow::result::Report;
+use halfrow::result::{CoverageReport, LinkReport, Report};
+use halfrow::run::Finished;
+use halfrow::verdict::Verdict;
 use tempfile::TempDir;
 
 use crate::made;
@@ -212,4 +215,32 @@ fn a_folder_that_has_gone_is_no_full_disk() {
     fs::remove_dir_all(&above).unwrap();
     let error = prepared.commit(&made::pass(), &[]).unwrap_err().to_string();
     assert!(error.ends_with("check that its folder exists, is writable and has space"), "{error}");
+}
+
+/// The errors on the line did no harm: it is not they that call for a remedy.
+#[test]
+fn a_pass_without_its_report_keeps_nothing_of_a_pass_and_says_how_to_get_one() {
+    let station = TempDir::new().unwrap();
+    let above = station.path().join("share");
+    fs::create_dir(&above).unwrap();
+    let folder = ReportFolder::prepare(&above.join("today"), false).unwrap();
+    fs::remove_dir_all(&above).unwrap();
+    let passed = made::pass();
+    let line_errors = LineErrors { framing: 1, ..LineErrors::default() };
+    let report = Report {
+        coverage: Some(CoverageReport { found: 9, faults: 10, equivalent: 1 }),
+        link: LinkReport { line_errors, ..passed.link },
+        ..passed
+    };
+    let mut finished = Finished { report, evidence: Vec::new() };
+    finished.commit(folder).unwrap_err();
+    let report = finished.report;
+    assert_eq!(report.verdict(), Verdict::Error);
+    assert_eq!((report.not_exercised.as_slice(), report.coverage), (&[][..], None));
+    let remedy = report.remedy().unwrap();
+    assert!(remedy.starts_with("See that its folder is there and has space"), "{remedy}");
+    // A board that never answered may be at another rate.
+    let silent = made::error();
+    let silent = Report { link: LinkReport { line_errors, ..silent.link }, ..silent };
+    assert!(silent.remedy().unwrap().contains("`baud=`"), "{:?}", silent.remedy());
 }

@@ -2,8 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Problem;
+use super::{Finding, Problem};
 use crate::link::LineErrors;
+
+/// The codes of problems that a poor line can cause, or one at another rate.
+const OF_LINE: [&str; 9] = [
+    "link-broke",
+    "no-answer",
+    "request-never-answered",
+    "not-a-board",
+    "session-lost",
+    "burst-begun-again",
+    "link-too-poor",
+    "row-missing",
+    "run-too-long",
+];
 
 /// What went over the link, and what went wrong on it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -40,6 +53,13 @@ pub struct LinkReport {
     pub reconnections: Vec<Reconnection>,
 }
 
+impl LinkReport {
+    /// What errors on the line say to do about a run that ended without a verdict, with `finding`, if they may have led to it.
+    pub(super) fn line_advice_on(&self, finding: &Finding) -> Option<&'static str> {
+        self.line_errors.advice().filter(|_| may_come_from_line(finding))
+    }
+}
+
 /// One time that the board went away during the run and came back.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reconnection {
@@ -50,4 +70,22 @@ pub struct Reconnection {
     /// Whether it still had its tables, and so had not lost its power; none when it was not asked.
     #[serde(default)]
     pub kept_tables: Option<bool>,
+}
+
+/// Whether errors on the line may have led to `finding`, by which a run ended without a verdict.
+fn may_come_from_line(finding: &Finding) -> bool {
+    match finding {
+        Finding::Problem(problem) | Finding::BoardStayedAway { reason: problem, .. } => {
+            OF_LINE.contains(&problem.code.as_str())
+        }
+        Finding::SecondLookBrokenOff(it) => may_come_from_line(&it.reason),
+        Finding::RightInAnotherSession { .. }
+        | Finding::WrongOverDoubtfulLink { .. }
+        | Finding::RowLostOnce { .. }
+        | Finding::RowLostAmongOthers { .. }
+        | Finding::RowLostEachTime(_)
+        | Finding::BurstStalled { .. }
+        | Finding::BurstEndedEarly { .. } => true,
+        _ => false,
+    }
 }

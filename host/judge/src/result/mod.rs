@@ -136,11 +136,11 @@ impl Report {
     }
 
     /// What to do next, if anything: as the likeliest suspect says, or else the finding. Under ERROR, errors on the line say it
-    /// first.
+    /// first if the finding may come from them.
     #[must_use]
     pub fn remedy(&self) -> Option<String> {
         let of_suspect = || self.suspects.first().map(Suspect::designer);
-        let of_line = || self.link.line_errors.advice().map(str::to_owned);
+        let of_line = || self.link.line_advice_on(&self.finding).map(str::to_owned);
         match self.verdict() {
             Verdict::Pass => None,
             Verdict::Fail => of_suspect().or_else(|| self.finding.remedy()),

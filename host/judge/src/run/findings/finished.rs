@@ -65,6 +65,7 @@ impl Finished {
         }
         report.finding = Problem::clone(&what).into();
         report.cause = Cause::Station;
+        (report.not_exercised, report.coverage) = (Vec::new(), None);
         Lack { what, is_told: true }
     }
 }
