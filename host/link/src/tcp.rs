@@ -108,7 +108,7 @@ impl TcpLink {
 
     /// Keeps text that comes in place of packets.
     fn listen(&mut self, received: &[u8]) {
-        if self.zero_seen || self.text.len() >= LONGEST_TEXT {
+        if self.zero_seen {
             return;
         }
         let text = received.split(|&byte| byte == 0).next().unwrap_or_default();

@@ -5,7 +5,9 @@ use std::net::{TcpListener, TcpStream};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
+use halfrow::link::LinkError;
 use halfrow_tests::not_tested::not_tested;
+use halfrow_tests::patience::LIMIT;
 use halfrow_tests::served::Served;
 
 use crate::{ends, passes, verify};
@@ -109,6 +111,34 @@ fn a_server_that_speaks_in_words_is_quoted() {
         assert!(!ended.headline().contains("the link broke"), "{}", ended.headline());
         server.join().unwrap();
     }
+}
+
+/// As a server that greets with its terms of use, or a board that tells how it boots.
+#[test]
+fn a_board_behind_a_long_greeting_that_goes_away_was_there() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    let server = std::thread::spawn(move || {
+        let mut host = listener.accept().unwrap().0;
+        for bytes in [&[b'a'; 200], &hello()[..]] {
+            host.write_all(bytes).unwrap();
+            // The host must take these bytes alone.
+            host.read_exact(&mut [0]).unwrap();
+        }
+    });
+    let mut link = halfrow::link::open(&target.parse().unwrap()).unwrap().link;
+    let mut came = Vec::new();
+    let lost = loop {
+        let before = came.len();
+        if let Err(lost) = link.exchange(&[], &mut came, LIMIT) {
+            break lost;
+        }
+        if came.len() > before && [200, 200 + hello().len()].contains(&came.len()) {
+            link.exchange(&[0], &mut came, LIMIT).unwrap();
+        }
+    };
+    assert!(matches!(lost, LinkError::Closed { .. }), "{lost}");
+    server.join().unwrap();
 }
 
 /// The HELLO among the frozen packets.
