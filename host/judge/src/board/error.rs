@@ -230,11 +230,13 @@ pub struct OpenFailed {
     pub error: BoardError,
     /// What the link did up to then.
     pub tally: Box<Tally>,
+    /// When that was, on the link's clock.
+    pub at: Duration,
 }
 
 impl OpenFailed {
     pub(super) fn of(error: BoardError, conversation: &Conversation) -> Self {
-        Self { error, tally: Box::new(conversation.tally) }
+        Self { error, tally: Box::new(conversation.tally), at: conversation.now() }
     }
 }
 

@@ -112,9 +112,9 @@ impl Board {
     pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, OpenFailed> {
         let mut board = Self::open_any(link, options)?;
         possible(&board.capabilities).map_err(|error| {
-            let tally = Box::new(board.tally());
+            let failed = OpenFailed::of(error, &board.conversation);
             board.close();
-            OpenFailed { error, tally }
+            failed
         })?;
         Ok(board)
     }
@@ -178,12 +178,6 @@ impl Board {
     #[must_use]
     pub fn tally(&self) -> Tally {
         self.conversation.tally
-    }
-
-    /// The retries that the run may use at its present length.
-    #[must_use]
-    pub fn retry_limit(&self) -> u64 {
-        self.conversation.limit.of(self.conversation.tally.packets_out)
     }
 
     /// The time on the link's clock.

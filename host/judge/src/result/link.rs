@@ -43,7 +43,8 @@ pub struct LinkReport {
     pub strays: u64,
     /// The errors on the line that the chip at the link's near end has seen.
     pub line_errors: LineErrors,
-    /// The most retries, late ones not counted, with which the link still counts as good enough to judge a board.
+    /// The most retries, late ones not counted, with which the link still counts as good enough to judge a board. Each link has its
+    /// own limit, and after reconnections this is their sum.
     pub retry_limit: u64,
     /// The round trip of an empty request, in microseconds of the link's clock.
     pub round_trip_us: Option<u64>,

@@ -7,6 +7,7 @@ pub(super) mod window;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
+use crate::board::deadlines::RetryLimit;
 use crate::board::{Board, BoardError, OpenFailed, OpenOptions, Tally, WhenHeld};
 use crate::link::{Link, OpenError, Reopener};
 use crate::result::{CheckName, Finding, LinkReport, Problem, Reconnection};
@@ -21,11 +22,22 @@ const TICK: Duration = Duration::from_millis(100);
 /// Keeps the nonces of sessions that make copies of old requests harmless apart from those of boards that came back.
 const NONCE: u32 = 1 << 16;
 
-/// What went over a link.
+/// What went over links that are closed.
 #[derive(Default)]
 struct Traffic {
     tally: Tally,
+    /// By their clocks, and between them.
     seconds: Duration,
+    links: u64,
+}
+
+impl Traffic {
+    /// Adds a link that carried `tally` in `seconds`. One that carried nothing is one that was hung up before.
+    fn add(&mut self, tally: Tally, seconds: Duration) {
+        self.tally += tally;
+        self.seconds += seconds;
+        self.links += u64::from(tally.packets_out > 0);
+    }
 }
 
 /// The sessions of a run.
@@ -37,10 +49,8 @@ pub(crate) struct Sessions {
     options: OpenOptions,
     /// Those opened within a look to make copies of old requests harmless.
     opened: u32,
-    /// What went over earlier links, which broke.
+    /// What went over earlier links, which broke; over all of them once the run has ended.
     earlier: Traffic,
-    /// What went over all links, once the run has ended or no board was opened.
-    tally: Tally,
     report: LinkReport,
 }
 
@@ -59,8 +69,7 @@ impl Sessions {
             },
             opened: 0,
             earlier: Traffic::default(),
-            tally: Tally::default(),
-            report: LinkReport { name, retry_limit: options.retry_limit.of(0), ..LinkReport::default() },
+            report: LinkReport { name, ..LinkReport::default() },
         }
     }
 
@@ -73,11 +82,11 @@ impl Sessions {
     }
 
     fn open_first(&mut self, link: Box<dyn Link>) -> Result<Board, End> {
-        let OpenFailed { error, tally } = match Board::open_any(link, &self.options) {
+        let OpenFailed { error, tally, at } = match Board::open_any(link, &self.options) {
             Ok(board) => return Ok(board),
             Err(failed) => failed,
         };
-        self.tally = *tally;
+        self.earlier.add(*tally, at);
         let end = End::board(CheckName::Identity, &error);
         match (&error, self.patience_after(&end)) {
             (BoardError::Link { .. }, Some(patience)) => self.open_again(patience, &end),
@@ -98,8 +107,7 @@ impl Sessions {
         patience: Duration,
         end: &End,
     ) -> Result<bool, End> {
-        self.earlier.tally += board.tally();
-        self.earlier.seconds += board.now();
+        self.earlier.add(board.tally(), board.now());
         // The old link, if still open, would keep the new one from being opened.
         board.hang_up();
         let back = self.open_again(patience, end)?;
@@ -195,15 +203,13 @@ impl Sessions {
 
     /// Notes the link's counts at the end of the run.
     pub(crate) fn note_end(&mut self, board: &Board) {
-        self.tally = self.earlier.tally;
-        self.tally += board.tally();
-        self.report.retry_limit = board.retry_limit();
-        self.report.seconds = (self.earlier.seconds + board.now()).as_secs_f64();
+        self.earlier.add(board.tally(), board.now());
     }
 
     /// What is reported of the link.
     pub(crate) fn report(self) -> LinkReport {
-        let tally = self.tally;
+        let Traffic { tally, seconds, links } = self.earlier;
+        let limit = self.options.retry_limit;
         LinkReport {
             bytes_out: tally.bytes_out,
             bytes_in: tally.bytes_in,
@@ -214,6 +220,10 @@ impl Sessions {
             late: tally.late,
             strays: tally.strays,
             line_errors: tally.line_errors,
+            // Each link has its own.
+            retry_limit: RetryLimit { fixed: limit.fixed.saturating_mul(links.max(1)), ..limit }
+                .of(tally.packets_out),
+            seconds: seconds.as_secs_f64(),
             ..self.report
         }
     }
