@@ -43,14 +43,15 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         error @ LinkTestError::NoFrame(_) => Failure::error(error),
     })?;
     let limit = arguments.board.retry_limit(&context.settings);
-    let (most, too_poor) = judged_over(&figures.errors, limit);
+    let too_poor = figures.errors.are_beyond(limit);
     let exit = match (figures.errors.wrong, too_poor) {
         (1.., _) => Exit::Fail,
         (0, true) => Exit::Error,
         (0, false) => Exit::Pass,
     };
     if context.json {
-        let link = LinkSummary { figures: &figures, retry_limit: most, too_poor };
+        let retry_limit = limit.of(figures.errors.packets_out);
+        let link = LinkSummary { figures: &figures, retry_limit, too_poor };
         return print_or_tell(exit, &result_text("link", exit, Some(&board), json!({ "link": link }))?);
     }
     let (figures, last) = (text(&figures), enough(&figures.errors, limit, too_poor));
@@ -62,22 +63,16 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 struct LinkSummary<'a> {
     #[serde(flatten)]
     figures: &'a Figures,
-    /// The most packets that a run of this length may send again.
+    /// The most packets that a run of this length may send again, late ones not counted.
     retry_limit: u64,
     too_poor: bool,
 }
 
-/// The most packets that a run may send again over such a link, and whether this one had to send more.
-fn judged_over(errors: &Errors, limit: RetryLimit) -> (u64, bool) {
-    let most = limit.of(errors.packets_out);
-    (most, errors.retries > most)
-}
-
-/// `too poor for verify: 9.6 % sent again (120 of 1,250), the limit is 5 % and 16`
+/// `too poor for verify: 9.6 % sent again (120 of 1,250), the limit is 5 % and 16`, late ones not counted.
 fn enough(errors: &Errors, limit: RetryLimit, too_poor: bool) -> String {
     let verdict = if too_poor { "too poor for verify" } else { "good enough for verify" };
-    let share = 100.0 * errors.retries as f64 / errors.packets_out.max(1) as f64;
-    let (again, all) = (grouped(errors.retries), grouped(errors.packets_out));
+    let share = 100.0 * errors.lost() as f64 / errors.packets_out.max(1) as f64;
+    let (again, all) = (grouped(errors.lost()), grouped(errors.packets_out));
     let (percent, fixed) = (100.0 * limit.share, limit.fixed);
     format!(
         "{:<12} {verdict}: {share:.1} % sent again ({again} of {all}), the limit is {percent} % and {fixed}",
@@ -89,10 +84,14 @@ fn text(figures: &Figures) -> String {
     let Figures { link, errors, round_trips, .. } = figures;
     let damaged = errors.damaged_out + errors.damaged_in;
     let share = if damaged == 0 { "none".to_owned() } else { format!("{:.1e}", errors.rate) };
+    let late = match errors.late {
+        0 => String::new(),
+        late => format!(", {} only since the answer was late", grouped(late)),
+    };
     let mut lines = vec![
         format!("{:<12} {link}", "link"),
         format!(
-            "{:<12} {} of {} ({} out, {} in): {share}, below {:.1e} at 95 % confidence; {} sent again",
+            "{:<12} {} of {} ({} out, {} in): {share}, below {:.1e} at 95 % confidence; {} sent again{late}",
             "damaged",
             grouped(damaged),
             count(errors.packets, "packet"),

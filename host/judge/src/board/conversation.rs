@@ -222,11 +222,9 @@ impl Conversation {
     /// Counts a retry. Retries after which nothing proved to be lost are no sign of a poor link.
     pub(super) fn count_retry(&mut self) -> Result<(), BoardError> {
         self.tally.retries += 1;
-        let limit = self.limit.of(self.tally.packets_out);
-        let retries = self.tally.retries.saturating_sub(self.tally.late);
-        if retries > limit {
-            let packets = self.tally.packets_out;
-            return Err(BoardError::TooPoor { retries, packets, limit });
+        let (packets, retries) = (self.tally.packets_out, self.tally.lost());
+        if self.limit.is_exceeded(packets, retries) {
+            return Err(BoardError::TooPoor { retries, packets, limit: self.limit.of(packets) });
         }
         Ok(())
     }

@@ -92,6 +92,12 @@ impl RetryLimit {
     pub fn of(self, packets: u64) -> u64 {
         self.fixed.saturating_add((packets as f64 * self.share) as u64)
     }
+
+    /// Whether a link is too poor over which `packets` were sent, `lost` of them again because something was lost.
+    #[must_use]
+    pub fn is_exceeded(self, packets: u64, lost: u64) -> bool {
+        lost > self.of(packets)
+    }
 }
 
 #[cfg(test)]

@@ -29,6 +29,14 @@ pub struct Tally {
     pub line_errors: LineErrors,
 }
 
+impl Tally {
+    /// Packets that had to be sent again, since something was lost.
+    #[must_use]
+    pub fn lost(&self) -> u64 {
+        self.retries.saturating_sub(self.late)
+    }
+}
+
 impl AddAssign for Tally {
     fn add_assign(&mut self, other: Self) {
         self.bytes_out += other.bytes_out;

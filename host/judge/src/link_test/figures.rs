@@ -5,6 +5,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::board::Tally;
+use crate::board::deadlines::RetryLimit;
 
 /// Everything that a link test measured.
 #[derive(Clone, Debug, Serialize)]
@@ -40,6 +41,8 @@ pub struct Errors {
     pub damaged_in: u64,
     /// Packets sent again.
     pub retries: u64,
+    /// Of those, the ones without a loss: the first answer was only late.
+    pub late: u64,
     /// Answers that differ from what was sent although their CRC is right, which is not the link's fault.
     pub wrong: u64,
     /// Damaged packets as a share of all packets.
@@ -61,11 +64,26 @@ impl Errors {
             damaged_out,
             damaged_in,
             retries: after.retries - before.retries,
+            late: after.late - before.late,
             wrong,
             rate: damaged / all,
             // Never below the exact Poisson bound, which is 3.0 for no error, 4.7 for one and 17.0 for ten.
             bound: ((damaged + 3.0 + 1.645 * damaged.sqrt()) / all).min(1.0),
         }
+    }
+}
+
+impl Errors {
+    /// Packets that had to be sent again, since something was lost.
+    #[must_use]
+    pub fn lost(&self) -> u64 {
+        self.retries.saturating_sub(self.late)
+    }
+
+    /// Whether a run over such a link would find it too poor.
+    #[must_use]
+    pub fn are_beyond(&self, limit: RetryLimit) -> bool {
+        limit.is_exceeded(self.packets_out, self.lost())
     }
 }
 
@@ -136,6 +154,16 @@ mod tests {
         // The exact bound for ten events is 16.96.
         assert_eq!((errors.packets, errors.rate), (1004, 10.0 / 1004.0));
         assert!((16.9..18.5).contains(&(errors.bound * 1004.0)), "{}", errors.bound);
+    }
+
+    /// As over a link that brings answers in another order. The limit of 100 packets is 16 and 5.
+    #[test]
+    fn packets_sent_again_although_nothing_was_lost_make_no_link_too_poor() {
+        for (retries, late, too_poor) in [(21, 0, false), (22, 0, true), (40, 19, false), (40, 18, true)] {
+            let tally = Tally { packets_out: 100, retries, late, ..Tally::default() };
+            let errors = Errors::between(Tally::default(), tally, 0, 0);
+            assert_eq!(errors.are_beyond(RetryLimit::default()), too_poor, "{retries}, {late} late");
+        }
     }
 
     #[test]
