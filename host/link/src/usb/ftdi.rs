@@ -30,7 +30,11 @@ const EIGHT_BITS: u16 = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ready {
     Fifo,
-    Uart { baud: u32 },
+    /// With `handshake`, RTS and CTS stop the other side.
+    Uart {
+        baud: u32,
+        handshake: bool,
+    },
 }
 
 /// A channel of a chip, called `name` in errors.
@@ -51,8 +55,8 @@ impl Ftdi<'_> {
         }
         self.leave_special_modes(index)?;
         self.request("setting the latency timer", LATENCY, options.latency.into(), index)?;
-        if let Ready::Uart { baud } = ready {
-            self.set_up_line(baud, options.handshake, index)?;
+        if let Ready::Uart { baud, handshake } = ready {
+            self.set_up_line(baud, handshake, index)?;
         }
         Ok(ready)
     }
@@ -80,7 +84,7 @@ impl Ftdi<'_> {
             (Mode::Fifo, None) => Ok(Ready::Fifo),
             (Mode::Uart, baud) => {
                 let baud = baud.unwrap_or_else(|| self.chip.speed().fastest());
-                self.divisor(baud).map(|_| Ready::Uart { baud })
+                self.divisor(baud).map(|_| Ready::Uart { baud, handshake: options.handshake })
             }
         }
     }
@@ -129,7 +133,7 @@ impl Ftdi<'_> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::sync::Mutex;
     use std::time::Duration;
 
@@ -137,9 +141,16 @@ mod tests {
 
     /// A chip that records requests, has a blank EEPROM, and refuses one request.
     #[derive(Default)]
-    struct Noting {
+    pub(in crate::usb) struct Noting {
         requests: Mutex<Vec<(u8, u16, u16)>>,
         refused: Option<u8>,
+    }
+
+    impl Noting {
+        /// One whose EEPROM, if `is_kept`, cannot be read either, so that the target alone says what it is.
+        pub(in crate::usb) fn without_eeprom(is_kept: bool) -> Self {
+            Self { refused: is_kept.then_some(READ_EEPROM), ..Self::default() }
+        }
     }
 
     impl Transport for Noting {
@@ -170,7 +181,7 @@ mod tests {
     fn a_uart_at_b_gets_these_requests() {
         let chip = Noting::default();
         let ready = make_ready(&chip, Chip::Ft2232h, "usb,baud=3000000").unwrap();
-        assert_eq!(ready, Ready::Uart { baud: 3_000_000 });
+        assert_eq!(ready, Ready::Uart { baud: 3_000_000, handshake: true });
         // Request, wValue and wIndex as in AN232B-04 and libftdi's ftdi.h: channel B is index 2.
         let expected = [
             (0, 0, 2),

@@ -21,13 +21,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use chip::Channel;
+use chip::{Channel, Chip};
 use find::{FtdiDevice, choose, sysfs};
 use ftdi::{Ftdi, Ready};
 use options::UsbOptions;
 use packets::strip;
 use threads::Threads;
-use transport::Libusb;
+use transport::{Libusb, Transport};
 
 use super::serial::{Holder, keepers};
 use super::{Link, LinkError, bytes_per_second};
@@ -50,6 +50,7 @@ pub(crate) struct UsbLink {
     threads: Threads,
     name: String,
     bytes_per_second: f64,
+    waits_for_cts: bool,
     opened: Instant,
 }
 
@@ -72,22 +73,33 @@ impl UsbLink {
             let (channel, channels) = (channel.letter(), chip.channels());
             return Err(UsbError::NoChannel { chip: chip.name(), name, channel, channels }.into());
         }
-        let transport = claim(&found, channel)?;
-        let ready = Ftdi { transport: &transport, chip, channel, name: &name }.make_ready(&options)?;
+        Ok(Self::over(claim(&found, channel)?, chip, channel, &name, &options)?)
+    }
+
+    /// Makes the channel of the `chip` behind `transport` ready, which is called `name` in errors.
+    fn over(
+        transport: impl Transport + 'static,
+        chip: Chip,
+        channel: Channel,
+        name: &str,
+        options: &UsbOptions,
+    ) -> Result<Self, UsbError> {
+        let ready = Ftdi { transport: &transport, chip, channel, name }.make_ready(options)?;
         let (what, bytes_per_second) = match ready {
             Ready::Fifo => ("FIFO".to_owned(), FIFO_BYTES_PER_SECOND),
-            Ready::Uart { baud } => (format!("{baud} baud"), bytes_per_second(baud)),
+            Ready::Uart { baud, .. } => (format!("{baud} baud"), bytes_per_second(baud)),
         };
         let (packet, is_line) = (chip.packet(), ready != Ready::Fifo);
         let unpack = Box::new(move |transfer: &[u8], data: &mut Vec<u8>, errors: &mut LineErrors| {
             strip(transfer, packet, data, is_line, errors);
         });
         let threads = Threads::start(Box::new(transport), unpack);
-        let threads = threads.map_err(|source| UsbError::NoThread { name: name.clone(), source })?;
+        let threads = threads.map_err(|source| UsbError::NoThread { name: name.to_owned(), source })?;
         Ok(Self {
             threads,
             name: format!("{name} ({}, channel {}, {what})", chip.name(), channel.letter()),
             bytes_per_second,
+            waits_for_cts: matches!(ready, Ready::Uart { handshake: true, .. }),
             opened: Instant::now(),
         })
     }
@@ -182,11 +194,32 @@ impl Link for UsbLink {
         true
     }
 
+    fn waits_for_cts(&self) -> bool {
+        self.waits_for_cts
+    }
+
     fn name(&self) -> String {
         self.name.clone()
     }
 
     fn line_errors(&self) -> LineErrors {
         self.threads.errors()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ftdi::tests::Noting;
+    use super::*;
+
+    #[test]
+    fn a_uart_with_a_handshake_sends_nothing_without_cts() {
+        let chip = Chip::Ft2232h;
+        for (target, waits) in [("usb", true), ("usb,flow=none", false), ("usb,mode=fifo", false)] {
+            let options = UsbOptions::of(&target.parse().unwrap()).unwrap();
+            let silent = Noting::without_eeprom(options.mode.is_some());
+            let link = UsbLink::over(silent, chip, chip.usual_channel(), target, &options).unwrap();
+            assert_eq!(link.waits_for_cts(), waits, "{target}");
+        }
     }
 }
