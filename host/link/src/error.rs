@@ -148,7 +148,19 @@ impl OpenError {
             Self::Tcp(error) => error.class(),
             Self::Usb(error) => error.class(),
             Self::System { .. } => Class::Station,
-            _ => Class::Call,
+            Self::UnknownKind(_)
+            | Self::NoAddress { .. }
+            | Self::AddressMissing { .. }
+            | Self::Option { .. }
+            | Self::OtherBoard { .. }
+            | Self::NoOption { .. }
+            | Self::Options { .. }
+            | Self::Pace { .. }
+            | Self::UnknownFront(_)
+            | Self::NoSimulation(_)
+            | Self::Recording(_) => Class::Call,
+            #[cfg(feature = "sim")]
+            Self::Trace(_) => Class::Call,
         }
     }
 }

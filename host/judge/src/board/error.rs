@@ -9,6 +9,7 @@ use halfrow_protocol::message::{Malformed, Refusal, RefusalCode, RowPlace};
 
 use super::Tally;
 use super::conversation::Conversation;
+use super::nature::{Shown, is_own};
 use super::received::{Had, Received, suspect, suspect_of_one};
 use crate::link::LinkError;
 use crate::verdict::{Cause, StoppedBy};
@@ -258,19 +259,6 @@ impl From<OpenFailed> for BoardError {
     }
 }
 
-/// Whether a request is refused only for its content and the board's abilities, whatever the board did before. Then the board
-/// does not do what its capabilities say, since this program asks for nothing else.
-fn is_own(refusal: &Refusal) -> bool {
-    use Kind::{Configure, Expect, TableCrc, TableRead, TableWrite};
-    let kind = Kind::from_code(refusal.kind);
-    match refusal.code {
-        RefusalCode::Kind | RefusalCode::Payload | RefusalCode::Taps => true,
-        // A range of COMMIT, RECORDS and rows depends on what was set and played before.
-        RefusalCode::Range => matches!(kind, Some(Configure | Expect | TableCrc | TableRead | TableWrite)),
-        _ => false,
-    }
-}
-
 /// Whether a request of `kind` needs no capability.
 fn is_of_every_board(kind: Kind) -> bool {
     use Kind::{Burst, Expect, Records, RowOut, Trap};
@@ -315,70 +303,26 @@ impl BoardError {
         }
     }
 
-    /// Whether the board is gone, as when it was unplugged or lost power, and may come back.
+    /// Whether something answers or holds the port, but is no board for this run at present.
     #[must_use]
-    pub(crate) fn is_outage(&self) -> bool {
-        use LinkError::{Closed, Failed, Unplugged};
-        match self {
-            Self::Link { source, .. } => {
-                matches!(**source, Closed { .. } | Failed { .. } | Unplugged { .. })
-            }
-            Self::NoAnswer { .. } | Self::SessionLost => true,
-            _ => false,
-        }
+    pub(crate) fn shows_device(&self) -> bool {
+        self.nature().is_device
     }
 
     /// Whether the board's answer is one that no sound board gives to that request.
     #[must_use]
     pub(crate) fn is_answer(&self) -> bool {
-        matches!(
-            self,
-            Self::Refused { .. }
-                | Self::Malformed { .. }
-                | Self::Unexpected { .. }
-                | Self::OtherBurst { .. }
-                | Self::WrongPlace { .. }
-        )
+        matches!(self.shown(), Some(Shown::Answer | Shown::NoCredit))
     }
 
-    /// Whether the board refused a row because it was beyond the window.
-    #[must_use]
-    pub(crate) fn is_without_credit(&self) -> bool {
-        matches!(self, Self::Refused { kind: Kind::RowIn, refusal } if refusal.code == RefusalCode::Credit)
-    }
-
-    /// Whether something answers or holds the port, but is no board for this run at present.
-    #[must_use]
-    pub(crate) fn shows_device(&self) -> bool {
-        match self {
-            Self::TurnedAway(by) => matches!(**by, LinkError::InUse { .. }),
-            Self::Held { .. }
-            | Self::NotGivenUp { .. }
-            | Self::NotABoard
-            | Self::Version { .. }
-            | Self::Echoed
-            | Self::Console { .. }
-            | Self::Impossible { .. }
-            | Self::Unclosed
-            | Self::Malformed { .. } => true,
-            _ => false,
-        }
+    /// What it shows of the board.
+    pub(crate) fn shown(&self) -> Option<Shown> {
+        self.nature().shown
     }
 
     /// The cause of a run that ends with this error.
     #[must_use]
     pub fn cause(&self) -> Cause {
-        match self {
-            Self::Held { .. } | Self::NotGivenUp { .. } => Cause::Busy,
-            Self::TurnedAway(by) if matches!(**by, LinkError::InUse { .. }) => Cause::Busy,
-            Self::NotABoard
-            | Self::Version { .. }
-            | Self::Impossible { .. }
-            | Self::Unclosed
-            | Self::Malformed { .. } => Cause::Refused,
-            Self::Refused { refusal, .. } if is_own(refusal) => Cause::Refused,
-            Self::Stopped(by) => Cause::Stopped(*by),
-            _ => Cause::Station,
-        }
+        self.nature().cause
     }
 }

@@ -1,6 +1,6 @@
 //! Why a run ended.
 
-use crate::board::BoardError;
+use crate::board::{BoardError, Shown};
 use crate::result::{CheckName, Finding, Outcome, Problem, Suspect};
 use crate::verdict::Cause;
 
@@ -13,36 +13,11 @@ pub(crate) enum End {
     Error { check: CheckName, cause: Cause, finding: Finding, shown: Option<Shown> },
 }
 
-/// What the board's error shows by which a run ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shown {
-    /// The board went away, and may come back.
-    Outage,
-    /// The board cannot be reached, and waiting does not help.
-    Unreachable,
-    /// The board gave an answer that no sound board gives after what the run asked of it.
-    Answer,
-    /// Such an answer: it refused a row of the run because it was beyond the window.
-    NoCredit,
-}
-
-impl Shown {
-    fn by(error: &BoardError) -> Option<Self> {
-        match error {
-            error if error.is_outage() => Some(Self::Outage),
-            BoardError::Link { .. } | BoardError::TurnedAway(_) => Some(Self::Unreachable),
-            error if error.is_without_credit() => Some(Self::NoCredit),
-            error if error.is_answer() => Some(Self::Answer),
-            _ => None,
-        }
-    }
-}
-
 impl End {
     /// The run could not go on because the board could not be driven.
     pub(crate) fn board(check: CheckName, error: &BoardError) -> Self {
         let (cause, finding) = (error.cause(), Problem::of(error).into());
-        Self::Error { check, cause, finding, shown: Shown::by(error) }
+        Self::Error { check, cause, finding, shown: error.shown() }
     }
 
     pub(crate) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
