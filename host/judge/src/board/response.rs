@@ -127,10 +127,7 @@ impl Board {
 
     /// The same with ROW_ACKs that acknowledge all rows before `row_sequence`.
     pub(crate) fn acknowledge_damaged(&mut self, row_sequence: u32) -> [u32; 2] {
-        let before = self.conversation.session.acknowledges_to.replace(row_sequence);
-        let damaged = self.give_damaged(&Request::RowAck);
-        self.conversation.session.acknowledges_to = before;
-        damaged
+        self.acknowledging(row_sequence, |board| board.give_damaged(&Request::RowAck))
     }
 
     /// Sends a request of `kind` with any payload, without waiting.
@@ -288,12 +285,27 @@ impl Board {
         self.conversation.session.acknowledges_to = row_sequence;
     }
 
-    /// Sends a ROW_ACK of all rows before `row_sequence`. Other packets acknowledge as before.
-    pub(crate) fn acknowledge_alone(&mut self, row_sequence: u32) {
+    /// Runs `act`, whose packets acknowledge all rows before `row_sequence`. Other packets acknowledge as before.
+    fn acknowledging<T>(&mut self, row_sequence: u32, act: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.conversation.session.acknowledges_to.replace(row_sequence);
-        let sequence = self.conversation.next_sequence();
-        self.conversation.queue(&Request::RowAck, sequence);
+        let done = act(self);
         self.conversation.session.acknowledges_to = before;
+        done
+    }
+
+    /// Sends a ROW_ACK of all rows before `row_sequence`.
+    pub(crate) fn acknowledge_alone(&mut self, row_sequence: u32) {
+        self.acknowledge_in_session(self.session(), row_sequence);
+    }
+
+    /// The same under the number of a `session` that need not be open. This is not answered.
+    pub(crate) fn acknowledge_in_session(&mut self, session: u8, row_sequence: u32) {
+        self.acknowledging(row_sequence, |board| {
+            board.conversation.under_session(session, |conversation| {
+                let sequence = conversation.next_sequence();
+                conversation.queue(&Request::RowAck, sequence);
+            });
+        });
     }
 
     /// Allows this many rows to come while something else is waited for.

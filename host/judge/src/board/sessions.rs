@@ -163,14 +163,4 @@ impl Board {
             said => said,
         }
     }
-
-    /// Acknowledges all rows before `row_sequence` under the number of a `session` that is not open. This is not answered.
-    pub(crate) fn acknowledge_in_session(&mut self, session: u8, row_sequence: u32) {
-        self.conversation.under_session(session, |conversation| {
-            let acknowledged = mem::replace(&mut conversation.session.acknowledged, row_sequence);
-            let sequence = conversation.next_sequence();
-            conversation.queue(&Request::RowAck, sequence);
-            conversation.session.acknowledged = acknowledged;
-        });
-    }
 }
