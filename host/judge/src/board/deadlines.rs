@@ -7,7 +7,8 @@ use std::time::Duration;
 pub enum Step {
     /// The reply to HELLO: the peer may be a chip that was just powered, with stale bytes in its buffers, or no board.
     Hello,
-    /// The reply to any other request. Reading a table back takes a board about 2,000 clocks.
+    /// The reply to any other request. The slowest, COMMIT and TABLE_WRITE of the longest tables, take the Verilog of this project
+    /// 28,000 clocks (WIRE.md, "Reply times").
     Request,
     /// The next row: the board plays it in about 3,000 clocks.
     Row,

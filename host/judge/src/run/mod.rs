@@ -47,7 +47,7 @@ pub(crate) use steps::NotAllJudged;
 use steps::Run;
 
 pub use crate::board::SessionIds;
-pub(crate) use at_speed::FEW as FEW_AT_SPEED;
+pub(crate) use at_speed::FEW_AT_SPEED;
 pub use findings::finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
 pub(crate) use frames::prepared::PrepareError;
 pub(crate) use golden::{CannotJudge, GoldenError};

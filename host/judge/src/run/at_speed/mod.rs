@@ -47,7 +47,7 @@ pub(super) const CONTENT: u16 = 1;
 /// How long a burst takes on hardware by default, on the board's clock.
 const USUAL: Duration = Duration::from_secs(3);
 /// The frames of a burst on any other board by default.
-pub(crate) const FEW: u32 = 3;
+pub(crate) const FEW_AT_SPEED: u32 = 3;
 /// The draw of the first corner's content, far from the draws of a soak.
 const FIRST_CORNER: u32 = 1 << 31;
 

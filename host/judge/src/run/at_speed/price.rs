@@ -6,7 +6,7 @@ use halfrow_model::Geometry;
 use halfrow_protocol::message::{BurstMode, FrameRecord};
 
 use super::burst::{BurstPlan, USUAL_CLOCK};
-use super::{FEW, USUAL, corners};
+use super::{FEW_AT_SPEED, USUAL, corners};
 use crate::board::{BoardNature, Bursts, Capabilities};
 use crate::run::plan::prices::Prices;
 use crate::run::{AtSpeed, Generation, Plan};
@@ -32,7 +32,7 @@ pub(super) fn usual_burst(
         AtSpeed::Usual | AtSpeed::Soak(_) if capabilities.nature == BoardNature::Hardware => {
             burst.frames_in(USUAL)
         }
-        AtSpeed::Usual | AtSpeed::Soak(_) => FEW,
+        AtSpeed::Usual | AtSpeed::Soak(_) => FEW_AT_SPEED,
     };
     burst
 }

@@ -11,7 +11,7 @@ use super::predicted::signer;
 use super::records_late::records_late;
 use super::tables_late::tables_late;
 use super::watched::{BurstSeen, EndsEarly};
-use super::{FEW, USUAL};
+use super::{FEW_AT_SPEED, USUAL};
 use crate::board::{NumberedFrame, Trapped, Unjudged};
 use crate::compare::{Comparison, bits_in};
 use crate::diagnosis::{self, Case, Uploaded};
@@ -117,8 +117,8 @@ impl Run<'_> {
             self.activate(generation)?;
         }
         // Twice as far as the first time, since a board may have to become warm, but no longer than two usual bursts.
-        let most = plan.frames_in(2 * USUAL).max(2 * FEW);
-        let plan = plan.trapping(n, n.saturating_add(1).saturating_mul(2).clamp(2 * FEW, most));
+        let most = plan.frames_in(2 * USUAL).max(2 * FEW_AT_SPEED);
+        let plan = plan.trapping(n, n.saturating_add(1).saturating_mul(2).clamp(2 * FEW_AT_SPEED, most));
         self.expect(&plan, generation)?;
         let ends_early = EndsEarly { when_wrong: true, at: None };
         let (watched, ended) = self.watch(&plan, slice::from_ref(generation), ends_early, &mut |_, _| {});

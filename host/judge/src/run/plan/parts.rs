@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::variations::Build;
 use super::{FrameSource, Plan, ScheduledFrame, Segment};
-use crate::run::at_speed::FEW;
+use crate::run::at_speed::FEW_AT_SPEED;
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -108,7 +108,7 @@ impl Selection {
             raise(Part::Judged(0), together);
         }
         if part == Part::Corners {
-            raise(Part::AtSpeed, FEW as usize);
+            raise(Part::AtSpeed, FEW_AT_SPEED as usize);
         }
         Self(parts)
     }

@@ -23,7 +23,7 @@ const CAPABILITIES: usize = 320;
 /// Clocks that a commit of the longest tables takes (WIRE.md, "Reply times").
 const COMMIT: usize = 28_000;
 /// Round trips that are measured.
-const LOOKS: u32 = 3;
+const ROUND_TRIPS: u32 = 3;
 /// For how long the longest packets are sent and returned where a link does not know its speed, and how many at most, since a
 /// virtual clock may stand still.
 const LONG_LOOK: Duration = Duration::from_millis(100);
@@ -63,7 +63,7 @@ impl Rates {
 /// The shortest and the longest of a few round trips of `bytes`, in seconds.
 fn round_trips(board: &mut Board, bytes: &[u8]) -> Result<(f64, f64), BoardError> {
     let (mut shortest, mut longest) = (Duration::MAX, Duration::ZERO);
-    for _ in 0..LOOKS {
+    for _ in 0..ROUND_TRIPS {
         let (_, took) = board.echo(bytes)?;
         (shortest, longest) = (shortest.min(took), longest.max(took));
     }

@@ -30,7 +30,7 @@ const PLACE: usize = 12;
 /// How often a row is given until it is inside the core.
 pub(super) const TRIES: u32 = 8;
 /// How often the board must say of a row that it has entered and is not inside.
-const LOOKS: u32 = 3;
+const SAYINGS: u32 = 3;
 /// How often a row is asked for again.
 const AGAIN: u16 = 3;
 /// The lowest bit of a row's number that a session does not reach by counting.
@@ -180,7 +180,7 @@ impl Rules<'_, '_> {
     /// each time in one answer, since an old RESET may drop the row.
     fn says_entered(&mut self, place: RowPlace) -> Result<bool, End> {
         let entered = place.row_sequence + 1 + u32::from(self.capabilities.row_banks_in);
-        for _ in 0..LOOKS {
+        for _ in 0..SAYINGS {
             let (status, window) = self.run.board.status_and_window().map_err(of_board)?;
             if status.core_busy == 1 || window != entered {
                 return Ok(false);
