@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use halfrow::board::deadlines::RetryLimit;
 use halfrow::link::{Candidate, Link, Reopener};
 use halfrow::progress::Silent;
 use halfrow::result::{Finding, Report};
@@ -122,4 +123,35 @@ fn nor_is_one_while_the_board_is_brought_back() {
         assert!(rows.load(Ordering::Relaxed) > 0, "no frame brought it back");
         assert_eq!(report.verdict(), expected, "{}", report.headline());
     }
+}
+
+/// The first answer with the capabilities is lost, and the link breaks at the second one.
+#[test]
+fn what_went_over_a_link_that_broke_as_the_board_was_opened_is_reported_too() {
+    let judged = |first: Candidate| {
+        let candidate = Candidate { reopen: Some(Box::new(|| Ok(sound(false)))), ..first };
+        let retry_limit = RetryLimit { fixed: 1, share: 0.0 };
+        let options = RunOptions { reconnect: Some(LIMIT), retry_limit, ..RunOptions::default() };
+        let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+        assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+        report.link
+    };
+    let whole = judged(breakable(|_, packet| vec![packet], Arc::default()));
+    let (is_cut, mut answers) = (Arc::new(AtomicBool::new(false)), 0);
+    let cut = Arc::clone(&is_cut);
+    let broken = judged(breakable(
+        move |toward, packet: Passing| {
+            let is_answer = toward == Toward::Host && packet.is(Kind::Capabilities);
+            answers += usize::from(is_answer);
+            cut.store(answers == 2, Ordering::Relaxed);
+            if is_answer { Vec::new() } else { vec![packet] }
+        },
+        is_cut,
+    ));
+    assert_eq!((whole.reconnections.len(), broken.reconnections.len()), (0, 1));
+    // HELLO and two requests for the capabilities, the second after 200 ms.
+    assert_eq!((broken.packets_out, broken.retries), (whole.packets_out + 3, 1), "{broken:?}");
+    assert!(broken.seconds >= whole.seconds + 0.2, "{broken:?}");
+    // Each link may use one.
+    assert_eq!((whole.retry_limit, broken.retry_limit), (1, 2));
 }
