@@ -48,6 +48,16 @@ fn too_few_seconds_end_with_2_and_the_least_that_this_link_needs() {
     assert!(error["parameters"]["least"].as_f64().unwrap() > 3.0, "{error}");
 }
 
+/// One packet is held back for a second, or swapped with the next, while the link is measured.
+#[test]
+fn a_packet_that_the_link_loses_does_not_make_a_call_wrong() {
+    for fault in ["fault=stall,packet=5,seconds=1", "fault=reorder,packet=2,toward=both,seed=7"] {
+        let board = format!("mock,{fault}");
+        let ended = Folder::new().halfrow(small("verify", &["-q", "--within", "2", "--board", &board]));
+        assert_eq!(ended.code, Some(0), "{fault}: {}{}", ended.stdout, ended.stderr);
+    }
+}
+
 /// Both verdicts are a PASS, and one of them is of a part of the run.
 #[test]
 fn a_pass_within_a_time_says_how_many_parts_were_left_out() {

@@ -61,27 +61,23 @@ pub enum WithinError {
     Faults(#[from] FaultsError),
 }
 
+/// How often at most a link that has lost packets is measured.
+const LOOKS: usize = 3;
+
 impl Run<'_> {
     /// Chooses what to take of the plan, for the time `limit` on the run's clock.
     ///
     /// # Errors
     /// [`End`] when the board does not answer, or the time does not suffice.
     pub(in crate::run) fn choose(&mut self, limit: Duration) -> Result<Plan, End> {
-        let rates = Rates::of(self.board).during(CheckName::Link)?;
-        let capabilities = self.board.capabilities.clone();
-        let prices = Prices::new(self.plan, &capabilities, rates);
-        let kept = if self.board.bytes_per_second().is_some() { KEPT } else { KEPT_UNSURE };
-        let mut time = Time { seconds: limit.as_secs_f64(), spent: self.clock().as_secs_f64(), kept };
-        // By a link's virtual clock choosing takes no time. By a real one it does, and so will choosing again.
-        let build = format!("{:08x}", self.board.welcome.build);
-        let tried = chosen(&prices, &build, time);
-        let took = self.clock().as_secs_f64() - time.spent;
-        let chosen = if took > 0.0 {
-            time.spent += 2.0 * took + HOST;
-            chosen(&prices, &build, time)
-        } else {
-            tried
-        };
+        let mut chosen = self.chosen(limit, 0.0)?;
+        // A packet that was lost while the link was measured says nothing of the link's speed, nor of the call.
+        for _ in 1..LOOKS {
+            if chosen.is_err() && self.board.tally().retries > 0 {
+                let lost = self.clock().as_secs_f64();
+                chosen = self.chosen(limit, lost)?;
+            }
+        }
         match chosen {
             Ok((selection, report)) => {
                 self.findings.within = Some(report);
@@ -95,7 +91,29 @@ impl Run<'_> {
             }
         }
     }
+
+    /// What fits into the time `limit` on the run's clock, of which the link has `lost` some seconds, which do not count.
+    fn chosen(&mut self, limit: Duration, lost: f64) -> Result<Chosen, End> {
+        let rates = Rates::of(self.board).during(CheckName::Link)?;
+        let capabilities = self.board.capabilities.clone();
+        let prices = Prices::new(self.plan, &capabilities, rates);
+        let kept = if self.board.bytes_per_second().is_some() { KEPT } else { KEPT_UNSURE };
+        let spent = self.clock().as_secs_f64() - lost;
+        let mut time = Time { seconds: limit.as_secs_f64(), spent, kept };
+        // By a link's virtual clock choosing takes no time. By a real one it does, and so will choosing again.
+        let build = format!("{:08x}", self.board.welcome.build);
+        let tried = chosen(&prices, &build, time);
+        let took = self.clock().as_secs_f64() - lost - time.spent;
+        if took > 0.0 {
+            time.spent += 2.0 * took + HOST;
+            return Ok(chosen(&prices, &build, time));
+        }
+        Ok(tried)
+    }
 }
+
+/// What is taken of a plan, unless too little fits.
+type Chosen = Result<(Selection, WithinReport), WithinError>;
 
 /// The time that the run may take.
 #[derive(Clone, Copy)]
@@ -108,7 +126,7 @@ struct Time {
     kept: f64,
 }
 
-fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Result<(Selection, WithinReport), WithinError> {
+fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Chosen {
     let faults = Faults::all()?;
     let Time { seconds, spent, kept } = time;
     let left = seconds * (1.0 - kept) - spent;
