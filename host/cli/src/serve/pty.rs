@@ -80,14 +80,16 @@ pub struct Name {
 }
 
 impl Name {
-    /// Links `path` to `target`. Replaces a link that leads nowhere, such as one that a killed server left behind.
+    /// Links `path` to `target`, which is the caller's. Replaces a link that a killed server left behind: it leads nowhere, or to
+    /// `target`, since the system gives the number of a terminal that is gone to the next one.
     ///
     /// # Errors
     /// [`ServeError`] when anything else has that name, or the link cannot be made.
     pub fn link(path: &Path, target: &Path) -> Result<Self, ServeError> {
         let door = |source| ServeError::Door { what: format!("the link {}", path.display()), source };
+        let is_left = || !path.exists() || fs::read_link(path).is_ok_and(|led| led == target);
         match fs::symlink_metadata(path) {
-            Ok(found) if found.is_symlink() && !path.exists() => fs::remove_file(path).map_err(door)?,
+            Ok(found) if found.is_symlink() && is_left() => fs::remove_file(path).map_err(door)?,
             Ok(_) => return Err(ServeError::Exists(path.to_owned())),
             Err(_) => {}
         }
@@ -120,5 +122,18 @@ mod tests {
         assert_eq!(fs::read_link(&path).unwrap(), second);
         drop(later);
         assert!(fs::symlink_metadata(&path).is_err());
+    }
+
+    #[test]
+    fn a_name_that_a_killed_server_left_is_taken_and_any_other_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, own, other] = ["board", "own", "other"].map(|name| folder.path().join(name));
+        for terminal in [&own, &other] {
+            fs::write(terminal, "").unwrap();
+        }
+        symlink(&own, &path).unwrap();
+        drop(Name::link(&path, &own).unwrap());
+        symlink(&other, &path).unwrap();
+        assert!(matches!(Name::link(&path, &own), Err(ServeError::Exists(_))));
     }
 }
