@@ -156,7 +156,7 @@ fn what_a_table_file_says_itself_may_be_said() {
 fn options_that_make_tables_beat_a_file_from_elsewhere() {
     let folder = with_tables();
     let tables = |more: &[&str]| {
-        let call = ["-v", "verify", "--json"].into_iter().chain(more.iter().copied());
+        let call = ["verify", "--json"].into_iter().chain(more.iter().copied());
         let ended = finish(folder.command(call).env("HALFROW_TABLES", "made.json"));
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         let said = ended.json()["tables"].clone();

@@ -49,7 +49,7 @@ impl TableArgument {
         if is_flag {
             given.refuse_void(Decider::Tables, &[]).map_err(Failure::call)?;
         } else if let Some(option) = given.void_flag(Decider::Tables) {
-            tracing::info!("the table file {} is passed over, since {option} makes tables", path.display());
+            tracing::warn!("the table file {} is passed over, since {option} makes tables", path.display());
             return Ok(None);
         }
         let (file, input) = TableFile::read(path)
@@ -61,7 +61,7 @@ impl TableArgument {
             None => Ok(Some(NamedTables { input, file })),
             Some(option) if is_flag => refuse(&option, path, &file),
             Some(option) => {
-                tracing::info!(
+                tracing::warn!(
                     "the table file {} is passed over, since {option} makes others",
                     path.display()
                 );
