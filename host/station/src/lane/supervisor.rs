@@ -15,7 +15,7 @@ use halfrow::verdict::StoppedBy;
 use super::message::MOST_LINE;
 use super::{Control, FILE_MIB, Job, Message, Ruling};
 use crate::process_group::{kill, killed, waited, without_secrets};
-use crate::record::{BoardSeen, StepRecord};
+use crate::record::{BoardSeen, StepRecord, made_within};
 use crate::said::{Said, Saying};
 
 /// How often the supervisor checks whether anybody wants the run to end.
@@ -121,7 +121,7 @@ struct Lane {
 
 impl Lane {
     fn start(program: &Path, job: &Job, spool: &Path) -> io::Result<Self> {
-        fs::create_dir_all(spool)?;
+        made_within(spool)?;
         let events = File::create(spool.join(EVENTS))?;
         // There are many lanes, and the board is what they wait for.
         let threads = std::env::var_os(THREADS).unwrap_or_else(|| "1".into());

@@ -99,8 +99,7 @@ impl Blobs {
         let path = self.path(&hash);
         let folder = path.parent().unwrap_or(&self.folder);
         if !folder.is_dir() {
-            fs::create_dir_all(folder)
-                .map_err(|source| BlobError::Folder { path: folder.to_owned(), source })?;
+            made_within(folder).map_err(|source| BlobError::Folder { path: folder.to_owned(), source })?;
             synced(&self.folder)?;
         }
         let written = Aside::written(&path, false, |file| file.write_all(bytes));
@@ -238,6 +237,15 @@ pub(crate) fn is_hash(name: &str) -> bool {
     name.len() == 64 && name.bytes().all(|byte| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte))
 }
 
+/// Makes the folder `path`, unless it is there, within one that must be there: where a station's folder was moved away, or its
+/// disk unmounted, nothing is begun in its place.
+pub(crate) fn made_within(path: &Path) -> io::Result<()> {
+    match fs::create_dir(path) {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists && path.is_dir() => Ok(()),
+        made => made,
+    }
+}
+
 /// Syncs the names in a folder to the disk.
 pub(crate) fn synced(folder: &Path) -> Result<(), BlobError> {
     let done = File::open(folder).and_then(|open| open.sync_all());
@@ -267,6 +275,8 @@ mod tests {
     fn evidence_is_written_where_a_folder_or_a_link_has_its_name() {
         let folder = tempfile::tempdir().unwrap();
         let blobs = Blobs::new(folder.path().join("blobs"));
+        assert!(blobs.put(b"abc").is_err() && !folder.path().join("blobs").exists(), "it is not there yet");
+        fs::create_dir(folder.path().join("blobs")).unwrap();
         let path = blobs.path(&blobs.put(b"abc").unwrap());
         let other = folder.path().join("other");
         fs::rename(&path, &other).unwrap();

@@ -13,7 +13,7 @@ use halfrow::result::FileHash;
 use serde::{Deserialize, Serialize};
 
 pub use blobs::{BlobError, Blobs};
-pub(crate) use blobs::{Piece, is_hash, synced};
+pub(crate) use blobs::{Piece, is_hash, made_within, synced};
 pub use conclude::Conclusion;
 pub(crate) use conclude::TEST_AGAIN;
 pub(crate) use not_exercised::in_one_line;

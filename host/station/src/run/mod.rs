@@ -339,6 +339,8 @@ fn save(
     let spool = folder.spool(&record.run.id);
     let run = record.run.id.clone();
     let saved = || {
+        // What the lane wrote down is there, too.
+        folder.refuse_gone()?;
         if record.conclusion.verdict != halfrow::Verdict::Pass {
             record.attachments = attached(&folder.blobs(), &spool)?;
         }

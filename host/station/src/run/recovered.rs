@@ -13,6 +13,7 @@ use crate::lane::supervisor::{EVENTS, kill_left_behind};
 use crate::plan::Production;
 use crate::record::{
     BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
+    made_within,
 };
 use crate::said::Saying;
 use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stored};
@@ -26,7 +27,7 @@ const CLAIM: &str = "claim.json";
 pub(super) fn note_claim(spool: &Path, claim: Option<&JobClaim>) {
     let Some(claim) = claim else { return };
     let write = || {
-        fs::create_dir_all(spool)?;
+        made_within(spool)?;
         let mut file = File::create(spool.join(CLAIM))?;
         file.write_all(&serde_json::to_vec(claim)?)?;
         file.sync_all()?;

@@ -18,7 +18,7 @@ pub enum StoreError {
         folder: PathBuf,
     },
     /// The station's folder cannot be used.
-    #[error("the station's folder {} cannot be used; check that it is writable and has space", folder.display())]
+    #[error("the station's folder {} cannot be used; check that it is there, is writable and has space", folder.display())]
     Folder {
         /// The folder.
         folder: PathBuf,

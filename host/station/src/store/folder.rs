@@ -42,6 +42,11 @@ impl Folder {
         if is_unfinished { Err(StoreError::Unrestored { folder: self.0.clone() }) } else { Ok(()) }
     }
 
+    /// Refuses a folder that was moved away since the start, or whose disk was unmounted: the start made `blobs` in it.
+    pub(crate) fn refuse_gone(&self) -> Result<(), StoreError> {
+        fs::metadata(self.0.join("blobs")).map(drop).map_err(|source| self.refused(source))
+    }
+
     /// Refuses a folder that has evidence and no database: no station may start from scratch there.
     pub(super) fn refuse_lost_database(&self) -> Result<(), StoreError> {
         self.refuse_lost(fs::metadata(self.database()).is_err())
@@ -136,6 +141,9 @@ impl Folder {
             reader.busy_timeout(PATIENCE)?;
             Ok(Box::new(Sqlite::new(reader)) as Box<dyn Database>)
         };
-        open().map_err(|source: DatabaseError| StoreError::of_file(&path, "to be read", source))
+        open().map_err(|source: DatabaseError| match self.refuse_gone() {
+            Err(gone) if !path.exists() => gone,
+            _ => StoreError::of_file(&path, "to be read", source),
+        })
     }
 }

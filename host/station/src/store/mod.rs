@@ -329,6 +329,7 @@ impl Store {
     /// Refuses to go on when another file has the name of the database that was opened, or another database was written over it:
     /// what is written now would be lost. The same for the lock file, which keeps others from the folder by its name alone.
     fn refuse_replaced(&self) -> Result<(), StoreError> {
+        self.folder.refuse_gone()?;
         let lock = self.folder.lock_file();
         if !self.opened.is_there(&self.folder) {
             Err(StoreError::Replaced { path: self.folder.database() })

@@ -7,6 +7,7 @@ pub(crate) mod floor;
 mod held;
 mod hooks;
 mod labgrid;
+mod moved;
 mod operators;
 mod refused;
 mod replaced;
