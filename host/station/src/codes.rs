@@ -89,6 +89,7 @@ codes::codes! {
         Replaced [path] => "database-replaced",
         LockReplaced [path] => "store-lock-replaced",
         OtherLog [path] => "database-beside-other-log",
+        ReadOnlyLog [path] => "database-log-read-only",
         NoRoom [path, megabytes] => "database-without-room",
         Plant [plant, doing] => "plant-refuses",
         NoRecord [plant, sha256] => "plant-without-record",
@@ -376,14 +377,9 @@ pub(crate) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
     program::problem(exit, error, known)
 }
 
-/// A fault in what was kept, as a problem with its code.
-pub(crate) fn of_fault(fault: &Fault) -> Problem {
-    Problem::by(fault, known)
-}
-
-/// A record that contradicts the database about its run, as a problem with its code.
-pub(crate) fn of_superseded(note: &Superseded) -> Problem {
-    Problem::by(note, known)
+/// What a check found, as a problem with its code.
+pub(crate) fn of_found(found: &(dyn Error + 'static)) -> Problem {
+    Problem::by(found, known)
 }
 
 /// Every list of the station's own codes.

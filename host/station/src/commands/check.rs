@@ -41,8 +41,8 @@ pub(super) fn tell(checked: &Checked, is_json: bool) -> Result<Exit, Failure> {
 
 fn document(checked: &Checked, exit: Exit) -> Result<String, Failure> {
     let Checked { runs, open, evidence, pruned, superseded, faults } = checked;
-    let superseded: Vec<_> = superseded.iter().map(codes::of_superseded).collect();
-    let faults: Vec<_> = faults.iter().map(codes::of_fault).collect();
+    let superseded: Vec<_> = superseded.iter().map(|note| codes::of_found(note)).collect();
+    let faults: Vec<_> = faults.iter().map(|fault| codes::of_found(fault)).collect();
     let rest = json!({
         "runs": runs, "open": open, "evidence": evidence, "pruned": pruned, "superseded": superseded, "faults": faults
     });

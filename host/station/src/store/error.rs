@@ -107,6 +107,16 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
+    /// The database has a log beside it that cannot be read, since nothing can be made in the folder.
+    #[error(
+        "the database {} has the log station.db-wal beside it, which cannot be read where nothing may be written; copy the \
+         folder, and name the copy",
+        path.display()
+    )]
+    ReadOnlyLog {
+        /// The file.
+        path: PathBuf,
+    },
     /// The disk has no room to bring the database up to date.
     #[error(
         "the database {} cannot be brought up to date: its disk lacks {megabytes} MB for a copy of it as it is; \

@@ -1,15 +1,18 @@
 //! The folder of a station, and what is in it.
 
 use std::fs::{self, File, TryLockError};
+use std::os::unix::ffi::OsStrExt as _;
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use nix::errno::Errno;
+use nix::unistd::{AccessFlags, access};
 use rusqlite::config::DbConfig;
-use rusqlite::{Connection, OpenFlags};
+use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::database::Sqlite;
-use super::{Database, DatabaseError, PATIENCE, StoreError};
+use super::{Database, PATIENCE, StoreError};
 use crate::record::Blobs;
 
 /// How long to wait for a program that is just ending to leave the folder, and the time between two tries.
@@ -136,14 +139,46 @@ impl Folder {
     /// A connection that cannot write.
     pub(super) fn reader(&self) -> Result<Box<dyn Database>, StoreError> {
         let path = self.database();
-        let open = || {
-            let reader = Connection::open_with_flags(&path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
-            reader.busy_timeout(PATIENCE)?;
-            Ok(Box::new(Sqlite::new(reader)) as Box<dyn Database>)
-        };
-        open().map_err(|source: DatabaseError| match self.refuse_gone() {
+        let opened = self.opened_to_read().map_err(|source| match self.refuse_gone() {
             Err(gone) if !path.exists() => gone,
             _ => StoreError::of_file(&path, "to be read", source),
-        })
+        });
+        let reader = opened?;
+        if self.may_only_be_read() {
+            let first = reader.query_row("PRAGMA schema_version", [], |_| Ok(()));
+            let code = first.err().and_then(|error| error.sqlite_error_code());
+            if matches!(code, Some(ErrorCode::CannotOpen | ErrorCode::ReadOnly)) {
+                return Err(StoreError::ReadOnlyLog { path });
+            }
+        }
+        Ok(Box::new(Sqlite::new(reader)))
     }
+
+    /// Opens the database to read it. If it has no log, SQLite makes one, unless it is told that nothing changes the file. Where
+    /// no log can be made, that is so unless another user's station starts meanwhile.
+    fn opened_to_read(&self) -> Result<Connection, rusqlite::Error> {
+        let (path, flags) = (self.database(), OpenFlags::SQLITE_OPEN_READ_ONLY);
+        let has_log = path.with_extension("db-wal").try_exists().unwrap_or(true);
+        let reader = if !has_log && self.may_only_be_read() {
+            Connection::open_with_flags(unchanging(&path), flags | OpenFlags::SQLITE_OPEN_URI)?
+        } else {
+            Connection::open_with_flags(&path, flags)?
+        };
+        reader.busy_timeout(PATIENCE)?;
+        Ok(reader)
+    }
+
+    /// Whether nothing can be made in the folder, because it is another user's, or its disk was mounted to be read only.
+    fn may_only_be_read(&self) -> bool {
+        matches!(access(&self.0, AccessFlags::W_OK), Err(Errno::EACCES | Errno::EROFS))
+    }
+}
+
+/// What SQLite calls a file that nothing changes (<https://www.sqlite.org/uri.html>).
+fn unchanging(path: &Path) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"/-_.".contains(&byte);
+    let letter = |&byte: &u8| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
+    let named: String = path.as_os_str().as_bytes().iter().map(letter).collect();
+    let host = if path.is_absolute() { "//" } else { "" };
+    format!("file:{host}{named}?immutable=1")
 }

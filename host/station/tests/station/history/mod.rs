@@ -15,6 +15,7 @@ mod pages;
 mod pareto;
 mod piped;
 mod put_back;
+mod read_only;
 pub(crate) mod released;
 pub(crate) mod served;
 mod units;

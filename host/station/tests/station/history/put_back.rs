@@ -24,7 +24,7 @@ fn renamed_to(from: &Path, to: &Folder) {
 }
 
 /// A copy of a station's folder as a kill at this moment would leave it.
-fn killed(made: &Made) -> TempDir {
+pub(super) fn killed(made: &Made) -> TempDir {
     let left = folder();
     let from = made.folder().path().join(".");
     assert!(Command::new("cp").arg("-r").args([&from, left.path()]).status().unwrap().success());

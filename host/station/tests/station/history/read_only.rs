@@ -1,0 +1,83 @@
+//! A station's folder that may only be read: another user's, or on a disk that became read-only after an error.
+
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::Path;
+use std::process::Command;
+
+use nix::unistd::geteuid;
+
+use super::made::{End, Made, Run};
+use super::put_back::killed;
+use crate::common::{Did, folder, program};
+
+/// A folder to which nobody may write until this is dropped, except for root.
+struct ReadOnly<'a>(&'a Path);
+
+impl<'a> ReadOnly<'a> {
+    fn new(folder: &'a Path) -> Self {
+        fs::set_permissions(folder, Permissions::from_mode(0o555)).unwrap();
+        Self(folder)
+    }
+
+    /// What this call does as a user who is not root, or has given up what root may.
+    fn call(&self, program: &Path, arguments: &[&str]) -> Did {
+        let mut call = Command::new(program);
+        if geteuid().is_root() {
+            call = Command::new("setpriv");
+            call.args(["--bounding-set=-dac_override", "--inh-caps=-dac_override", "--"]).arg(program);
+        }
+        call.args(arguments).arg(self.0).output().unwrap().into()
+    }
+
+    fn history(&self) -> Did {
+        self.call(program(), &["history", "--data"])
+    }
+}
+
+impl Drop for ReadOnly<'_> {
+    fn drop(&mut self) {
+        // What cannot be removed then stays.
+        let _ = fs::set_permissions(self.0, Permissions::from_mode(0o755));
+    }
+}
+
+/// The name of the folder has letters that mean something in a URI.
+#[test]
+fn a_folder_that_may_only_be_read_is_read_with_the_log_that_a_kill_left_and_without_one() {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::Pass));
+    let (left, place) = (killed(&made), folder());
+    let ended = place.path().join("a? b#%20&c");
+    let kept = made.closed();
+    fs::rename(kept.path(), &ended).unwrap();
+    for (data, has_log) in [(ended.as_path(), false), (left.path(), true)] {
+        assert_eq!(data.join("station.db-wal").exists(), has_log);
+        let data = ReadOnly::new(data);
+        // The control.
+        assert_eq!(data.call("sh".as_ref(), &["-c", "touch \"$0/new\""]).code, Some(1));
+        let history = data.history();
+        assert!(history.code == Some(0) && history.said.contains("S1"), "{history:?}");
+        let check = data.call(program(), &["check", "--data"]);
+        assert!(check.code == Some(0) && check.said.contains("1 run and "), "{check:?}");
+    }
+}
+
+/// SQLite reads the log by an index that it cannot make there.
+#[test]
+fn a_log_that_cannot_be_read_in_its_folder_is_not_passed_over() {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::Pass));
+    let left = killed(&made);
+    fs::remove_file(left.path().join("station.db-shm")).unwrap();
+    let data = ReadOnly::new(left.path());
+    let history = data.history();
+    assert_eq!(history.code, Some(3), "{history:?}");
+    assert!(history.complained.contains("; copy the folder, and name the copy"), "{history:?}");
+    // The control, which is what the sentence asks for.
+    let copy = killed(&made);
+    fs::remove_file(copy.path().join("station.db-shm")).unwrap();
+    let history =
+        Did::from(Command::new(program()).args(["history", "--data"]).arg(copy.path()).output().unwrap());
+    assert!(history.code == Some(0) && history.said.contains("S1"), "{history:?}");
+}
