@@ -130,3 +130,10 @@ pub enum Fault {
         key: String,
     },
 }
+
+impl Fault {
+    /// Whether a table differs from what the records say.
+    pub(crate) const fn is_of_table(&self) -> bool {
+        matches!(self, Self::Differs { .. } | Self::Missing { .. } | Self::Surplus { .. })
+    }
+}

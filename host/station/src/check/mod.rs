@@ -27,6 +27,8 @@ pub struct Checked {
     pub evidence: usize,
     /// Attachments that were removed because they were old.
     pub pruned: usize,
+    /// Records that cannot be read. The tables follow from the records, so this alone may be why tables differ.
+    pub unread: usize,
     /// Records that contradict the database about a run, which need not be a fault.
     pub superseded: Vec<Superseded>,
     /// What is not as it was written.
@@ -49,6 +51,7 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
         rebuilt: Rebuilt::new()?,
         evidence: 0,
         pruned: 0,
+        unread: 0,
         faults: Vec::new(),
     };
     look.at_all(&finals, &open, &snapshot.rebindings()?);
@@ -61,8 +64,8 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     let superseded = superseded::superseded(&folder.blobs(), &unnamed, &snapshot)?;
     faults.extend(without_row(unnamed, &snapshot)?);
     faults.extend(foreign(folder)?);
-    let Look { evidence, pruned, .. } = look;
-    Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, superseded, faults })
+    let Look { evidence, pruned, unread, .. } = look;
+    Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, unread, superseded, faults })
 }
 
 /// What is among the plans in `folder` and may lead out of it, whatever the version of its database.
@@ -93,6 +96,7 @@ struct Look {
     rebuilt: Rebuilt,
     evidence: usize,
     pruned: usize,
+    unread: usize,
     faults: Vec<Fault>,
 }
 
@@ -110,7 +114,9 @@ impl Look {
                 Entry::Open(open) => self.at_open(open),
                 Entry::Rebinding(change) => self.at_rebinding(change),
             };
-            self.faults.extend(done.err());
+            let fault = done.err();
+            self.unread += usize::from(matches!(fault, Some(Fault::Evidence { .. } | Fault::Record { .. })));
+            self.faults.extend(fault);
         }
     }
 

@@ -22,7 +22,7 @@ const BINDING: &str = "binding";
 /// # Errors
 /// [`StoreError`] when the plant cannot be read at all.
 pub fn check_plant(plant: &Snapshot, told: &mut dyn FnMut(usize)) -> Result<Checked, StoreError> {
-    let mut look = Look { plant, rebuilt: Rebuilt::of_plant()?, runs: 0, faults: Vec::new() };
+    let mut look = Look { plant, rebuilt: Rebuilt::of_plant()?, runs: 0, unread: 0, faults: Vec::new() };
     look.at_runs(told)?;
     let rebindings = plant.rebindings()?;
     look.at_rebindings(&rebindings);
@@ -44,8 +44,8 @@ pub fn check_plant(plant: &Snapshot, told: &mut dyn FnMut(usize)) -> Result<Chec
     }
     look.at_what_names_runs()?;
     let open = plant.open_runs()?.len();
-    let Look { runs, faults, .. } = look;
-    Ok(Checked { runs, open, evidence: runs, pruned: 0, superseded: Vec::new(), faults })
+    let Look { runs, unread, faults, .. } = look;
+    Ok(Checked { runs, open, evidence: runs, pruned: 0, unread, superseded: Vec::new(), faults })
 }
 
 /// Why a plant may differ from what its records say.
@@ -60,6 +60,7 @@ struct Look<'a> {
     plant: &'a Snapshot,
     rebuilt: Rebuilt,
     runs: usize,
+    unread: usize,
     faults: Vec<Fault>,
 }
 
@@ -75,7 +76,10 @@ impl Look<'_> {
                 self.runs += 1;
                 match self.record(kept) {
                     Ok(record) => self.at_run(kept, record)?,
-                    Err(fault) => self.faults.push(fault),
+                    Err(fault) => {
+                        self.unread += 1;
+                        self.faults.push(fault);
+                    }
                 }
             }
             told(self.runs);

@@ -7,7 +7,7 @@ use halfrow::words::{count, verb};
 use serde_json::json;
 
 use super::{Failure, document};
-use crate::check::{self, Checked};
+use crate::check::{self, Checked, Fault};
 use crate::codes;
 use crate::console;
 use crate::exit::Exit;
@@ -40,17 +40,31 @@ pub(super) fn tell(checked: &Checked, is_json: bool) -> Result<Exit, Failure> {
 }
 
 fn document(checked: &Checked, exit: Exit) -> Result<String, Failure> {
-    let Checked { runs, open, evidence, pruned, superseded, faults } = checked;
+    let Checked { runs, open, evidence, pruned, unread, superseded, faults } = checked;
     let superseded: Vec<_> = superseded.iter().map(|note| codes::of_found(note)).collect();
     let faults: Vec<_> = faults.iter().map(|fault| codes::of_found(fault)).collect();
     let rest = json!({
-        "runs": runs, "open": open, "evidence": evidence, "pruned": pruned, "superseded": superseded, "faults": faults
+        "runs": runs, "open": open, "evidence": evidence, "pruned": pruned, "unread": unread, "superseded": superseded,
+        "faults": faults
     });
     document::text("check", exit, None, rest)
 }
 
+/// A line for each fault, and one before those of the tables if they may only follow from the others.
+fn faults(Checked { unread, faults, .. }: &Checked) -> Vec<String> {
+    let mut lines: Vec<_> = faults.iter().map(|fault| format!("fault: {fault}")).collect();
+    if let (1.., Some(place)) = (*unread, faults.iter().position(Fault::is_of_table)) {
+        let (records, them) = (count(*unread, "record"), if *unread == 1 { "it" } else { "them" });
+        let note = format!(
+            "note: the faults below may all follow from the {records} that cannot be read; mend {them} first, and check again"
+        );
+        lines.insert(place, note);
+    }
+    lines
+}
+
 fn text(checked: &Checked) -> String {
-    let mut lines: Vec<_> = checked.faults.iter().map(|fault| format!("fault: {fault}")).collect();
+    let mut lines = faults(checked);
     lines.extend(checked.superseded.iter().map(|note| format!("note: {note}")));
     if checked.open > 0 {
         let (runs, are) = (count(checked.open, "run"), verb(checked.open, "are"));

@@ -31,7 +31,7 @@ fn runs(folder: &Folder) -> Page {
 
 /// Counts runs that ended, open runs, pieces of evidence, and pieces that were removed.
 fn sound(folder: &Folder) -> [usize; 4] {
-    let Checked { runs, open, evidence, pruned, superseded, faults } = check(folder).unwrap();
+    let Checked { runs, open, evidence, pruned, superseded, faults, .. } = check(folder).unwrap();
     assert!(faults.is_empty() && superseded.is_empty(), "{faults:?} {superseded:?}");
     [runs, open, evidence, pruned]
 }

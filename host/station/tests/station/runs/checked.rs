@@ -98,6 +98,31 @@ fn a_changed_row_is_found_in_every_table() {
     }
 }
 
+/// The tables follow from the records, so most of what differs then follows from the one that is lost.
+#[test]
+fn what_may_only_follow_from_a_record_that_cannot_be_read_is_told_as_that() {
+    let station = station();
+    let hash = station.query("SELECT record_sha256 FROM run WHERE verdict = 'FAIL'").remove(0);
+    let record = station.store().blobs().path(&hash);
+    let aside = station.path("aside");
+    let lines = |did: &Did| did.said.lines().map(str::to_owned).collect::<Vec<_>>();
+    let note = "note: the faults below may all follow from the 1 record that cannot be read; mend it first, and check again";
+    fs::rename(&record, &aside).unwrap();
+    let did = lines(&station.check());
+    assert!(did[0].starts_with("fault: evidence of run ") && did[0].contains("cannot be read"), "{did:?}");
+    assert_eq!(did[1], note, "{did:?}");
+    assert!(did[2..].iter().filter(|line| line.starts_with("fault: table ")).count() > 10, "{did:?}");
+    fs::rename(&aside, &record).unwrap();
+    // The control: of these, neither follows from a record.
+    let attached = station.query("SELECT sha256 FROM attachment").remove(0);
+    fs::remove_file(station.store().blobs().path(&attached)).unwrap();
+    let database = rusqlite::Connection::open(station.store().database()).unwrap();
+    database.execute("UPDATE day_count SET passed = passed + 1", []).unwrap();
+    let did = lines(&station.check());
+    assert!(did[0].starts_with("fault: evidence of run ") && did[1].starts_with("fault: table "), "{did:?}");
+    assert!(!did.iter().any(|line| line.starts_with("note: ")), "{did:?}");
+}
+
 /// No record has a waiver; the audit has.
 #[test]
 fn a_waiver_that_was_changed_moved_or_removed_is_found() {
