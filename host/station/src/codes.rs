@@ -90,6 +90,7 @@ codes::codes! {
         LockReplaced [path] => "store-lock-replaced",
         OtherLog [path] => "database-beside-other-log",
         ReadOnlyLog [path] => "database-log-read-only",
+        Unfinished [path] => "database-unfinished",
         NoRoom [path, megabytes] => "database-without-room",
         Plant [plant, doing] => "plant-refuses",
         NoRecord [plant, sha256] => "plant-without-record",

@@ -117,6 +117,16 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
+    /// The database was begun at a first start that did not end.
+    #[error(
+        "the database {} was begun and never finished, as when the disk is full at the first start, and has no results; \
+         make room, and start the station once",
+        path.display()
+    )]
+    Unfinished {
+        /// The file.
+        path: PathBuf,
+    },
     /// The disk has no room to bring the database up to date.
     #[error(
         "the database {} cannot be brought up to date: its disk lacks {megabytes} MB for a copy of it as it is; \

@@ -12,7 +12,7 @@ use rusqlite::config::DbConfig;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::database::Sqlite;
-use super::{Database, PATIENCE, StoreError};
+use super::{Database, DatabaseError, PATIENCE, StoreError};
 use crate::record::Blobs;
 
 /// How long to wait for a program that is just ending to leave the folder, and the time between two tries.
@@ -57,8 +57,8 @@ impl Folder {
 
     /// The same for a `database` without any table, as where it was copied without its write-ahead log.
     pub(super) fn refuse_lost_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
-        let tables = database.one("SELECT count(*) FROM sqlite_schema", &[], |row| row.get::<i64>(0));
-        let tables = tables.map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
+        let tables =
+            tables(database).map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
         self.refuse_lost(tables == 0)
     }
 
@@ -172,6 +172,11 @@ impl Folder {
     fn may_only_be_read(&self) -> bool {
         matches!(access(&self.0, AccessFlags::W_OK), Err(Errno::EACCES | Errno::EROFS))
     }
+}
+
+/// How many tables and indices the database has.
+pub(super) fn tables(database: &mut dyn Database) -> Result<i64, DatabaseError> {
+    database.one("SELECT count(*) FROM sqlite_schema", &[], |row| row.get(0))
 }
 
 /// What SQLite calls a file that nothing changes (<https://www.sqlite.org/uri.html>).

@@ -10,7 +10,7 @@ use rusqlite::Connection;
 use super::database::{Database, DatabaseError, Engine, Row as Found, Sqlite, Value, values};
 use super::table::{Rows, page};
 use super::{
-    Folder, OpenRun, Plant, Rebinding, StoreError, bindings, generation, migrations, open_run, rows,
+    Folder, OpenRun, Plant, Rebinding, StoreError, bindings, folder, generation, migrations, open_run, rows,
     statements,
 };
 use crate::record::{PlanRecord, Record};
@@ -63,8 +63,11 @@ impl Snapshot {
         let found = snapshot.read("to be read", |reader| {
             reader.batch("BEGIN")?;
             // The transaction begins with the first read.
-            reader.one(migrations::NEWEST, &[], |row| row.get(0))
+            if folder::tables(reader)? == 0 { Ok(0) } else { migrations::newest(reader) }
         })?;
+        if found == 0 {
+            return Err(StoreError::Unfinished { path: folder.database() });
+        }
         migrations::refuse_unknown_version(&folder.database(), found)?;
         Ok(snapshot)
     }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::Permissions;
+use std::iter;
 use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
 
@@ -170,6 +171,29 @@ fn frames_that_cannot_be_listed_are_not_left_out() {
         assert!(record.contains("-should.png"), "{record}");
         return;
     }
+}
+
+/// The first start begins the database; the next one ends it.
+#[test]
+fn a_database_that_a_full_disk_kept_from_being_made_is_told_as_that() {
+    let mut seen = 0;
+    for first in iter::successors(Some(1), |first| Some(first + 1 + first / 2)) {
+        let station = Station::with(PLAN);
+        let did = injected(&station, "CAT00001", &format!("pwrite64:error=ENOSPC:when={first}+"));
+        assert_eq!(did.code, Some(3), "{first}: {did:?}");
+        let check = station.check();
+        let said = match check.code {
+            Some(0) => break,
+            // There is no database yet.
+            Some(2) => "has no station's results",
+            _ => "was begun and never finished, as when the disk is full at the first start",
+        };
+        assert!(check.complained.contains(said), "{first}: {check:?}");
+        seen += usize::from(check.code == Some(3));
+        assert_eq!(station.run("CAT00001", "mock").code, Some(0), "{first}");
+        assert_eq!(station.check().code, Some(0), "{first}: the control");
+    }
+    assert!(seen > 2, "{seen}");
 }
 
 /// From every call on.
