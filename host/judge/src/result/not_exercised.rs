@@ -55,7 +55,7 @@ pub enum NotExercised {
         /// C, twice that column.
         centre2: u32,
     },
-    /// Some bits of C, twice the column of the optical centre, were the same in every frame.
+    /// Some bits of C, twice the column of the optical centre, were the same in every frame, or changed no sample of any.
     CentreBits {
         /// The bits, from 0.
         bits: Vec<usize>,
