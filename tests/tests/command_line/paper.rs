@@ -304,6 +304,7 @@ fn three_ways_stand_side_by_side_and_bends_are_those_of_the_projections() {
 
 /// The claims, which are the largest errors that a grid by formula leaves, were computed in Python, apart from this program.
 #[test]
+#[ignore = "a minute long; scripts/soak runs it"]
 fn what_is_left_per_lens_frame_and_centre_is_what_the_page_of_lenses_says() {
     let folder = Folder::new();
     let (report, _) = made(&folder, 0, &["residuals"]);
