@@ -78,6 +78,11 @@ impl Run<'_> {
         Run { plan: &chosen, ..self }.looking_again(seen)
     }
 
+    /// The generation of that number, if the plan has one.
+    pub(super) fn generation(&self, number: u8) -> Option<Generation> {
+        self.generations.iter().find(|generation| generation.number == number).cloned()
+    }
+
     /// All steps from the link on, and again if a late packet may have caused what they end with.
     fn looking_again(&mut self, seen: &mut Observations) -> Result<Vec<NotExercised>, End> {
         self.all_but_identity(seen).map_err(|found| match found {

@@ -221,7 +221,7 @@ impl Run<'_> {
         let number = seen.frames.last().map_or(0, |frame| frame.generation);
         let active =
             Generation { number, tables: self.plan.tables.clone(), kernel: self.plan.kernel.clone() };
-        let decoy = self.generations.iter().find(|generation| generation.number == DECOY).cloned();
+        let decoy = self.generation(DECOY);
         let can_have = |decoy: &Generation| {
             self.board.capabilities.table_banks > 1 && self.board.knows_shape_of(&decoy.tables)
         };

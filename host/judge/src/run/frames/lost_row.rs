@@ -79,8 +79,7 @@ impl Run<'_> {
         let before = self.board.tally();
         self.board.drop_rows()?;
         // That forgets a commit whose frame has not begun. The tables stay.
-        let generations = &self.generations;
-        if let Some(tables) = generations.iter().find(|it| it.number == frame.generation).cloned() {
+        if let Some(tables) = self.generation(frame.generation) {
             self.commit_uploaded(&tables, frame.number, geometry.height())?;
         }
         self.board.status(true)?;

@@ -26,7 +26,7 @@ impl Run<'_> {
 
     /// Uploads and commits a generation, to be used from `first_frame` on, for frames of `rows` rows.
     pub(crate) fn commit(&mut self, number: u8, first_frame: u16, rows: usize) -> Result<(), End> {
-        let generation = self.generations.iter().find(|generation| generation.number == number).cloned();
+        let generation = self.generation(number);
         generation.map_or(Ok(()), |generation| self.upload(&generation, first_frame, rows))
     }
 

@@ -62,7 +62,7 @@ impl Run<'_> {
 
     fn read_back_after(&mut self, seen: &Observations) -> Result<Finding, End> {
         let last = seen.frames.last().map_or(DECOY, |frame| frame.generation);
-        let last = self.generations.iter().find(|generation| generation.number == last).cloned();
+        let last = self.generation(last);
         let Some(last) = last.filter(|generation| generation.number != DECOY) else {
             return Ok(Finding::TablesUnused {});
         };

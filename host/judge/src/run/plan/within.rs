@@ -102,11 +102,11 @@ impl Run<'_> {
         let mut time = Time { seconds: limit.as_secs_f64(), spent, kept };
         // By a link's virtual clock choosing takes no time. By a real one it does, and so will choosing again.
         let build = format!("{:08x}", self.board.welcome.build);
-        let tried = chosen(&prices, &build, time);
+        let tried = fitting(&prices, &build, time);
         let took = self.clock().as_secs_f64() - lost - time.spent;
         if took > 0.0 {
             time.spent += 2.0 * took + HOST;
-            return Ok(chosen(&prices, &build, time));
+            return Ok(fitting(&prices, &build, time));
         }
         Ok(tried)
     }
@@ -126,7 +126,8 @@ struct Time {
     kept: f64,
 }
 
-fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Chosen {
+/// What fits into `time` over a link with these `prices`.
+fn fitting(prices: &Prices<'_>, build: &str, time: Time) -> Chosen {
     let faults = Faults::all()?;
     let Time { seconds, spent, kept } = time;
     let left = seconds * (1.0 - kept) - spent;
