@@ -64,9 +64,6 @@ pub(crate) enum CallError {
     /// The lens file does not give the size of its pictures.
     #[error("the lens file {} does not say how large its pictures are; give --width and --height", path.display())]
     LensSizeMissing { path: PathBuf },
-    /// The file's name does not tell in which format the tables are to be written.
-    #[error("{} names no format of tables; end it in .json, or in .mem for $readmemh", path.display())]
-    TablesFormat { path: PathBuf },
     /// The file's name says another format than the option.
     #[error("{} is no {format}; leave --format out, or name a folder with -o", path.display())]
     OtherFormat { path: PathBuf, format: Format },

@@ -2,7 +2,6 @@
 
 use std::error::Error;
 use std::io;
-use std::path::Path;
 
 use halfrow::optics::OpticsError;
 use halfrow::result::Problem;
@@ -12,14 +11,8 @@ use pyo3::prelude::*;
 const VALUE_WRONG: &str = "usage-value-wrong";
 /// And for two options that exclude each other.
 const CONFLICT: &str = "usage-arguments-conflict";
-
-/// And for a file name of tables that gives no format.
-const TABLES_FORMAT: &str = "tables-format-unknown";
 /// The code for a system that has no thread left.
 const NO_THREAD: &str = "run-thread-missing";
-/// Errors of writing that are the call's: a name without a format, and files that exist. The command line finds them before it
-/// begins.
-const NOT_WRITTEN: [&str; 3] = ["file-exists", "frame-extension-unknown", "report-exists"];
 
 /// Who is to blame for an error, which decides the exception's class.
 #[derive(Clone, Copy)]
@@ -54,22 +47,6 @@ pub(crate) fn optics(error: impl Into<OpticsError>) -> PyErr {
 /// The exception for `error`, for which the call is not to blame.
 pub(crate) fn failed<E: Error + 'static>(error: E) -> PyErr {
     raised(Whose::World, &error)
-}
-
-/// The exception for what could not be written.
-pub(crate) fn unwritten<E: Error + 'static>(error: E) -> PyErr {
-    let problem = Problem::of(&error);
-    exception(Whose::of_call(NOT_WRITTEN.contains(&problem.code.as_str())), &problem)
-}
-
-/// The exception for tables that are to be written to `path`, whose name gives no format of tables: the same as the command
-/// line's.
-pub(crate) fn no_tables(path: &Path) -> PyErr {
-    let told =
-        format!("{} names no format of tables; end it in .json, or in .mem for $readmemh", path.display());
-    let mut problem = Problem::new(TABLES_FORMAT, told);
-    problem.parameters.insert("path".to_owned(), path.display().to_string().into());
-    exception(Whose::Call, &problem)
 }
 
 /// The exception for a run for which the system has no thread, as `error` says.

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use halfrow::frames::{self, RawGeometry, RawLayout, ReadOptions, UnknownLayout, preview};
+use halfrow::frames::{self, Format, RawGeometry, RawLayout, ReadOptions, UnknownLayout, preview};
 use halfrow::model::Frame;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 
-use crate::{arguments, arrays, choices, errors};
+use crate::{arguments, arrays, choices, errors, outputs};
 
 /// Reads the frame in the file `path`: uint16 of shape (height, width), each sample 0 to 2^bits − 1.
 ///
@@ -60,7 +60,9 @@ pub(crate) fn write_frame(
     overwrite: bool,
 ) -> PyResult<()> {
     let frame = frame_of(frame, "frame", bits, phase)?;
-    py.detach(|| frames::write(&path, &frame, overwrite)).map_err(errors::unwritten)
+    Format::of(&path).map_err(errors::input)?;
+    outputs::check_files([&path], overwrite)?;
+    py.detach(|| frames::write(&path, &frame, overwrite)).map_err(errors::failed)
 }
 
 /// A picture of `frame` for viewing: uint8 of shape (height, width, 3), red, green and blue coded as sRGB. Each missing colour is

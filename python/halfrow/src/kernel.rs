@@ -10,7 +10,7 @@ use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
 
-use crate::{arguments, errors};
+use crate::{arguments, errors, outputs};
 
 /// An interpolation kernel as a board stores it: 65 nodes of five weights each.
 ///
@@ -84,7 +84,8 @@ impl Kernel {
     #[pyo3(signature = (path, *, overwrite = false))]
     fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let file = KernelFile { kernel: self.kernel.clone(), about: self.about.clone() };
-        file.write(&path, overwrite).map_err(errors::unwritten)
+        outputs::check_files([&path], overwrite)?;
+        file.write(&path, overwrite).map_err(errors::failed)
     }
 
     fn __repr__(&self) -> String {

@@ -18,6 +18,7 @@ mod errors;
 mod frames;
 mod kernel;
 mod lens;
+mod outputs;
 mod plan;
 mod run;
 mod tables;

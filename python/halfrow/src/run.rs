@@ -7,7 +7,7 @@ use halfrow::{Finished, ReportFolder};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
-use crate::errors;
+use crate::{errors, outputs};
 
 /// What a run found, from which halfrow/_report.py makes a Report.
 #[pyclass(frozen, module = "halfrow")]
@@ -44,8 +44,9 @@ impl Run {
 
     /// Writes report.json, report.xml (JUnit) and report.html into the folder `path`.
     fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
+        outputs::check_report(&path, overwrite)?;
         let Finished { report, evidence } = &self.finished;
         py.detach(|| ReportFolder::prepare(&path, overwrite)?.commit(report, evidence))
-            .map_err(errors::unwritten)
+            .map_err(errors::failed)
     }
 }

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use halfrow::call::Input;
 use halfrow::model::{Interpolant, RowFactor};
 use halfrow::optics::{self, Chosen, Optics, View};
-use halfrow::tables::{TableFile, datapath_of, mem};
+use halfrow::tables::{TableFile, TableFormat, datapath_of, mem};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
 
 use crate::kernel::{Kernel, KernelLike};
 use crate::lens::{Lens, LensLike};
-use crate::{arguments, choices, errors};
+use crate::{arguments, choices, errors, outputs};
 
 /// The name of a kernel that comes with a table file.
 const OF_FILE: &str = "the table file's";
@@ -70,8 +70,7 @@ impl Tables {
         path: PathBuf,
         #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
     ) -> PyResult<Self> {
-        let is_mem = path.extension().is_some_and(|extension| extension == "mem");
-        let (mut file, files) = if is_mem {
+        let (mut file, files) = if TableFormat::of(&path) == Ok(TableFormat::Mem) {
             let (tables, kernel, inputs) = mem::read(&path).map_err(errors::optics)?;
             (TableFile { tables, kernel, about: None }, inputs.to_vec())
         } else {
@@ -89,19 +88,11 @@ impl Tables {
     /// files with memory images. Existing files are replaced only with `overwrite`.
     #[pyo3(signature = (path, *, overwrite = false))]
     fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
-        let (tables, kernel) = (&self.chosen.tables, &self.chosen.kernel);
-        match path.extension().and_then(|extension| extension.to_str()) {
-            Some("mem") => mem::write(&path, tables, kernel, overwrite).map(drop),
-            Some("json") => {
-                let file =
-                    TableFile { tables: tables.clone(), kernel: kernel.clone(), about: self.about.clone() };
-                file.write(&path, overwrite)
-            }
-            _ => {
-                return Err(errors::no_tables(&path));
-            }
-        }
-        .map_err(errors::unwritten)
+        let format = TableFormat::of(&path).map_err(errors::input)?;
+        outputs::check_files(format.places(&path), overwrite)?;
+        let Chosen { tables, kernel, .. } = self.chosen.clone();
+        let file = TableFile { tables, kernel, about: self.about.clone() };
+        format.write(&file, &path, overwrite).map_err(errors::failed)
     }
 
     /// Columns of the frames.

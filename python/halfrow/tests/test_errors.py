@@ -20,6 +20,11 @@ def test_codes_are_those_of_the_program(tmp_path, program, opencv):
     other.write_text('{"datapath": 3}')
     (tmp_path / "there.json").write_text("{}")
     (tmp_path / "there.pgm").write_text("")
+    (tmp_path / "link.pgm").symlink_to("there.pgm")
+    (tmp_path / "folder.json").mkdir()
+    link, folder, nowhere = (str(tmp_path / name) for name in ("link.pgm", "folder.json", "no/x.pgm"))
+    capitals = str(tmp_path / "T.MEM")
+    halfrow.Tables.from_lens().write(capitals)
     frame = np.zeros((2, 64), np.uint16)
     halfrow.write_frame(tmp_path / "in.pgm", frame)
     there = {name: str(tmp_path / f"there.{name}") for name in ("json", "pgm")}
@@ -29,6 +34,14 @@ def test_codes_are_those_of_the_program(tmp_path, program, opencv):
         (lambda: halfrow.Tables.from_lens().write(there["json"]), ["tables", "-o", there["json"]], "file-exists"),
         (lambda: halfrow.Tables.from_lens().write(other_name), ["tables", "-o", other_name], "tables-format-unknown"),
         (lambda: halfrow.write_frame(there["pgm"], frame), [*correct, there["pgm"]], "file-exists"),
+        (lambda: halfrow.write_frame(link, frame, overwrite=True), [*correct, link, "--overwrite"], "file-is-link"),
+        (lambda: halfrow.write_frame(nowhere, frame), [*correct, nowhere], "folder-unusable"),
+        (
+            lambda: halfrow.Tables.from_lens().write(folder, overwrite=True),
+            ["tables", "-o", folder, "--overwrite"],
+            "file-is-no-regular-one",
+        ),
+        (lambda: halfrow.Tables.from_lens().write(capitals), ["tables", "-o", capitals], "file-exists"),
         (lambda: halfrow.write_frame(other_name, frame), [*correct, other_name], "frame-extension-unknown"),
         (lambda: halfrow.Tables.read(broken), ["verify", "--tables", broken], "table-file-wrong"),
         (lambda: halfrow.Tables.read(other), ["verify", "--tables", other], "table-file-of-other-datapath"),
@@ -53,7 +66,7 @@ def refused_as_by_the_program(program, call, arguments, code):
     named = dict(told["parameters"])
     for of_option in {"option", "first", "second"} & set(named):
         option = named[of_option].removeprefix("--").replace("-", "_")
-        named[of_option] = "frames" if option == "frame" else option
+        named[of_option] = {"frame": "frames", "output": "path"}.get(option, option)
     assert (error.code, error.parameters) == (told["code"], named), arguments
     assert code in (None, error.code)
     assert isinstance(error, halfrow.InputError) == (exit_code == 2), arguments

@@ -43,7 +43,6 @@ codes::codes! {
         RowsOfGrid => "rows-of-grid",
         EntriesOfRows => "entries-without-grid",
         LensSizeMissing [path] => "lens-size-missing",
-        TablesFormat [path] => "tables-format-unknown",
         OtherFormat [path] => "frame-format-contradicted",
         OneFile [path, frames, option] => "one-file-for-several-frames",
         FramesToStdout [option] => "frames-to-stdout",

@@ -1,23 +1,21 @@
 //! `halfrow tables`
 
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
 
 use super::{Context, Failure};
 use crate::arguments::optics::{self, LensArguments};
-use crate::call_error::CallError;
 use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
 use crate::files::prepare_files;
 use halfrow::call::Files;
 use halfrow::optics::outside_circle;
-use halfrow::tables::{TableFile, mem};
+use halfrow::tables::{TableFile, TableFormat};
 use halfrow::words::count;
-use halfrow_files::written_aside::WriteAsideError;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -34,7 +32,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    let format = Format::of(&arguments.output).map_err(Failure::call)?;
+    let format = TableFormat::of(&arguments.output).map_err(Failure::call)?;
     let of_settings = context.settings.kernel.as_deref().map(OsStr::new);
     let kernel = arguments.kernel.as_deref().or(of_settings);
     prepare_files(
@@ -71,38 +69,4 @@ fn about(source: &str) -> Option<serde_json::Map<String, serde_json::Value>> {
     about.insert("made_by".to_owned(), concat!("halfrow ", env!("CARGO_PKG_VERSION")).into());
     about.insert("from".to_owned(), source.into());
     Some(about)
-}
-
-/// The format of a table file.
-#[derive(Clone, Copy)]
-enum Format {
-    Json,
-    Mem,
-}
-
-impl Format {
-    /// The format that the name's extension gives.
-    fn of(path: &Path) -> Result<Self, CallError> {
-        let extension = path.extension().map(OsStr::to_ascii_lowercase).unwrap_or_default();
-        match extension.to_str() {
-            Some("json") => Ok(Self::Json),
-            Some("mem") => Ok(Self::Mem),
-            _ => Err(CallError::TablesFormat { path: path.to_owned() }),
-        }
-    }
-
-    /// The files that are written for `path`.
-    fn places(self, path: &Path) -> Vec<PathBuf> {
-        match self {
-            Self::Json => vec![path.to_owned()],
-            Self::Mem => mem::paths(path).into(),
-        }
-    }
-
-    fn write(self, file: &TableFile, path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
-        match self {
-            Self::Json => file.write(path, overwrite),
-            Self::Mem => mem::write(path, &file.tables, &file.kernel, overwrite).map(drop),
-        }
-    }
 }

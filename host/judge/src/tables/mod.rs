@@ -17,6 +17,7 @@
 //! used, so that a typing error does not look like a broken board.
 
 mod error;
+mod format;
 pub mod json;
 mod layout;
 pub mod mem;
@@ -25,6 +26,7 @@ mod place;
 pub mod text;
 
 pub use error::{ContentError, MemError, TableFileError, WrongDatapath};
+pub use format::{TableFormat, UnknownTableFormat};
 pub use json::{KernelFile, TableFile};
 pub use place::Place;
 

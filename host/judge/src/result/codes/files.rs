@@ -15,7 +15,7 @@ use crate::kernels::{DamagedKernel, UnknownKernel};
 use crate::lenses::{LensContentError, LensFileError, WrongShape};
 use crate::optics::OpticsError;
 use crate::report::ReportError;
-use crate::tables::{ContentError, MemError, TableFileError, WrongDatapath};
+use crate::tables::{ContentError, MemError, TableFileError, UnknownTableFormat, WrongDatapath};
 use halfrow_files::NotRegular;
 use halfrow_files::written_aside::{Unfinished, WriteAsideError};
 
@@ -194,6 +194,8 @@ codes! {
     UnknownFormat => "file-format-unknown"
     ;
     UnknownLayout => "raw-layout-unknown"
+    ;
+    UnknownTableFormat [path] => "tables-format-unknown"
     ;
     UnknownKernel => "kernel-unknown"
     ;
