@@ -75,7 +75,7 @@ def named(result):
 
 def test_every_failing_test_has_a_folder_of_its_own(pytester):
     """However similar and however long their names are."""
-    cases = ["a/b", "a b", "a+b", "x" * 300, "y" + "x" * 300]
+    cases = ["a/b", "a b", "a+b", "x" * 300, "y" + "x" * 300, "\U00020000" * 300]
     pytester.makepyfile(SMALL + f"""
 @pytest.mark.parametrize("case", {cases}, ids={cases})
 def test_it(halfrow_board, case):

@@ -23,8 +23,8 @@ _REPORTS = pytest.StashKey[List[Report]]()
 _FILES = ("report.html", "report.json", "report.xml")
 # A file in the folder of --halfrow-report that lists what was kept there, one name per line.
 _LIST = ".halfrow-kept"
-# How many characters of a test's id go into its folder's name. File systems take 255 bytes, and a character may have three.
-_LENGTH = 75
+# How many bytes of a test's id go into its folder's name. File systems take 255, and a hash comes behind them.
+_LENGTH = 240
 
 
 class JudgedBoard:
@@ -96,7 +96,7 @@ _FOLDER = pytest.StashKey[Optional[_Folder]]()
 
 def _folder_name(test: str) -> str:
     """A folder name that no other test has: as much of the test's id as a file system takes, and a hash."""
-    readable = re.sub(r"[^\w.-]+", "-", test).strip("-")[-_LENGTH:]
+    readable = re.sub(r"[^\w.-]+", "-", test).strip("-").encode()[-_LENGTH:].decode(errors="ignore")
     return f"{readable}-{hashlib.sha256(test.encode(errors='surrogatepass')).hexdigest()[:8]}"
 
 
