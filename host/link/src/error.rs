@@ -173,6 +173,10 @@ fn instead_of(kind: &str) -> String {
     if kind.starts_with("tty") {
         return format!("for a serial port write serial:/dev/{kind}");
     }
+    if kind == "pool" {
+        return "only the commands that judge or correct take a board of a pool; name the board itself here"
+            .to_owned();
+    }
     format!("choose from {}", kinds::forms().join(", "))
 }
 
