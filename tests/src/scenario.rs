@@ -40,7 +40,8 @@ pub struct Scenario {
     pub sentence: &'static str,
     /// What it may say instead where host and board both keep real time, since then it depends on which of them is late.
     pub when_late: &'static [&'static str],
-    /// Whether it takes ten seconds and more behind an emulated chip.
+    /// Whether it takes ten seconds and more behind an emulated chip, or simulated. Then it is simulated with pins alone, by
+    /// `scripts/soak pins`.
     pub is_slow: bool,
     /// Whether it goes without bursts on the simulated board without pins, where they take as long as all the rest of a run.
     pub is_stepped_on_sim: bool,
@@ -79,6 +80,11 @@ fn is_in_process(target: &str) -> bool {
     ["mock", "sim"].contains(&kind(target))
 }
 
+/// Whether `target` is the simulated board whose bytes do not go through the pins of a chip.
+fn is_sim_without_pins(target: &str) -> bool {
+    target.split(',').next() == Some("sim")
+}
+
 /// The kind of board that a target names.
 fn kind(board: &str) -> &str {
     board.split([':', ',']).next().unwrap_or(board)
@@ -88,11 +94,13 @@ impl Scenario {
     /// Whether it makes sense on `board`, a target.
     #[must_use]
     pub fn suits(&self, board: &str) -> bool {
-        match self.on {
-            On::AnyBoard => true,
-            On::OwnWire => is_in_process(board),
-            On::MockOnly => kind(board) == "mock",
-        }
+        let is_too_slow = self.is_slow && is_sim_without_pins(board);
+        !is_too_slow
+            && match self.on {
+                On::AnyBoard => true,
+                On::OwnWire => is_in_process(board),
+                On::MockOnly => kind(board) == "mock",
+            }
     }
 
     /// The same scenario, which may also end with one of these `sentences` where either end may be late.
@@ -144,8 +152,7 @@ impl Scenario {
     /// Like [`Self::run`].
     pub fn judge(&self, target: &str, board: &str) -> Result<Value, Box<Surprise>> {
         let smaller = if kind(target) == "sim" && !self.has_own_size() { SMALLER } else { &[] };
-        let is_without_pins = target.split(',').next() == Some("sim");
-        let stepped = if is_without_pins && self.is_stepped_on_sim { STEPPED } else { &[] };
+        let stepped = if self.is_stepped_on_sim && is_sim_without_pins(target) { STEPPED } else { &[] };
         let arguments = self.arguments.iter().chain(smaller).chain(stepped).copied();
         let ended = halfrow(["verify", "--json", "--board", target].into_iter().chain(arguments));
         let said = ended.json();

@@ -41,6 +41,7 @@ const GAINS: [(&str, [[f64; 3]; 6]); 2] = [
 ];
 
 #[test]
+#[ignore = "a minute long; scripts/soak runs it"]
 fn fitted_kernels_gain_on_the_photographs_of_table_1() {
     let Some(first) = photographs::paths().into_iter().next() else { return };
     let images = first.parent().unwrap().to_str().unwrap();

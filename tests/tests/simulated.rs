@@ -133,17 +133,17 @@ fn model_mock_and_verilog_agree_on_every_sample_and_every_latency() {
 
 #[test]
 fn whole_boards_agree_through_their_bytes() {
-    boards_agree(Front::Bytes, 400);
+    boards_agree(Front::Bytes, 200);
 }
 
 #[test]
 fn whole_boards_agree_through_a_uart_s_pins() {
-    boards_agree(Front::Uart, 10);
+    boards_agree(Front::Uart, 4);
 }
 
 #[test]
 fn whole_boards_agree_through_a_fifo_s_pins() {
-    boards_agree(Front::Fifo, 30);
+    boards_agree(Front::Fifo, 12);
 }
 
 #[test]

@@ -29,9 +29,9 @@ pub const REPAIRED_LINKS: &[Scenario] = &[
 pub const SLOW_LINKS: &[Scenario] = &[
     passes("a packet that comes twice", ",fault=duplicate,packet=70", SMALL).stepped_on_sim(),
     passes("a greeting that comes twice", ",fault=duplicate,packet=0", SMALL).stepped_on_sim(),
-    passes("packets that overtake each other", ",fault=reorder,rate=0.005,seed=7", SMALL),
+    passes("packets that overtake each other", ",fault=reorder,rate=0.005,seed=7", SMALL).stepped_on_sim(),
     passes("a tenth of a second of silence", ",fault=stall,seconds=0.1", SMALL).stepped_on_sim(),
-    passes("a second of silence", ",fault=stall,packet=90,seconds=1,toward=host", SMALL),
+    passes("a second of silence", ",fault=stall,packet=90,seconds=1,toward=host", SMALL).stepped_on_sim(),
     passes("three seconds of silence again and again", ",fault=stall,every=60000,seconds=3", SMALL)
         .stepped_on_sim(),
 ];

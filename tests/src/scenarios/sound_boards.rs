@@ -9,19 +9,19 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("the paper's system with seven taps", "", &["--kernel", "keys", "--frame", "builtin:noise"]),
     passes("nearest neighbour", "", &[W, "128", H, "72", R, "73.78", "--kernel", "nearest"]).stepped_on_sim(),
     passes("linear", "", &[W, "128", H, "72", R, "73.78", "--kernel", "linear"]).stepped_on_sim(),
-    passes("Keys", "", &[W, "128", H, "72", R, "73.78", "--kernel", "keys"]),
+    passes("Keys", "", &[W, "128", H, "72", R, "73.78", "--kernel", "keys"]).stepped_on_sim(),
     passes("balanced Hermite", "", &[W, "128", H, "72", R, "73.78", "--kernel", "hermite-balanced"])
         .stepped_on_sim(),
     passes("five fitted taps", "", &[W, "128", H, "72", R, "73.78", "--kernel", "sharp5"]).stepped_on_sim(),
-    passes("seven fitted taps", "", &[W, "128", H, "72", R, "73.78", "--kernel", "sharp7"]),
+    passes("seven fitted taps", "", &[W, "128", H, "72", R, "73.78", "--kernel", "sharp7"]).stepped_on_sim(),
     passes("five taps", ",taps=five", &[W, "128", H, "72", R, "73.78", "--kernel", "hermite"]),
     passes("five fitted taps on a board of five", ",taps=five", &[W, "128", H, "16", "--kernel", "sharp5"]),
-    passes("8 bits", "", &[W, "128", H, "72", R, "73.78", "--bits", "8"]),
+    passes("8 bits", "", &[W, "128", H, "72", R, "73.78", "--bits", "8"]).stepped_on_sim(),
     passes("10 bits", "", &[W, "128", H, "72", R, "73.78", "--bits", "10", "--kernel", "keys"]),
     passes("a board of one depth", ",depths=10", &[W, "128", H, "16", "--bits", "10"]),
     passes("RGGB", "", &[W, "128", H, "72", R, "73.78", "--phase", "rggb"]).stepped_on_sim(),
     passes("BGGR", "", &[W, "128", H, "72", R, "73.78", "--phase", "bggr"]).stepped_on_sim(),
-    passes("GBRG", "", &[W, "128", H, "72", R, "73.78", "--phase", "gbrg"]),
+    passes("GBRG", "", &[W, "128", H, "72", R, "73.78", "--phase", "gbrg"]).stepped_on_sim(),
     passes("a centre between two columns", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "40.5"]),
     passes("a centre on a column", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "88"]).stepped_on_sim(),
     passes("a centre at the left edge", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "0"])
@@ -29,7 +29,7 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("a centre above the frame", "", &[W, "128", H, "16", R, "73.78", "--centre-y", "-50"])
         .stepped_on_sim(),
     passes("rows outside the image circle", "", &[W, "128", H, "72", R, "20"]).stepped_on_sim(),
-    passes("the smallest frame", "", &[W, "64", H, "1"]),
+    passes("the smallest frame", "", &[W, "64", H, "1"]).stepped_on_sim(),
     passes("the widest frame", ",max-width=2592", &[W, "2592", H, "8", R, "4"]),
     passes("the highest frame", "", &[W, "64", H, "2048", R, "1030", "--frame", "builtin:noise"])
         .stepped_on_sim()
@@ -53,9 +53,9 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("a serial line", ",speed=46080", &[W, "128", H, "16"]).on(On::OwnWire).slow(),
     passes("a distant board", ",speed=1200000,delay=0.01", &[W, "128", H, "16"]).on(On::OwnWire).slow(),
     passes("a pipe without a buffer", ",buffer=0,speed=100000", &[W, "128", H, "16"]).on(On::OwnWire),
-    passes("every frame three times", "", &[W, "128", H, "16", "--repeat", "3"]),
+    passes("every frame three times", "", &[W, "128", H, "16", "--repeat", "3"]).stepped_on_sim(),
     passes("ready to stop at a difference", "", &[W, "128", H, "16", "--fail-fast"]).stepped_on_sim(),
-    passes("another seed", "", &[W, "128", H, "16", "--seed", "18446744073709551615"]),
+    passes("another seed", "", &[W, "128", H, "16", "--seed", "18446744073709551615"]).stepped_on_sim(),
 ];
 
 const SENSOR: &[&str] =
