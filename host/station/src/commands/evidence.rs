@@ -12,7 +12,7 @@ use super::export::{NoFolder, unwritten};
 use super::looking::Data;
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::history::unit::run_of;
+use crate::history::unit::{UnitRun, run_of};
 use crate::record::Attachment;
 use crate::store::{Snapshot, StoreError};
 
@@ -31,11 +31,18 @@ pub(super) struct Arguments {
     to: PathBuf,
 }
 
-/// The station does not know a run of this number.
+/// No run of this number is over here.
 #[derive(Debug, thiserror::Error)]
-#[error("there is no run {run} here; `halfrow-station history` lists the runs")]
+#[error("no run {run} is over here; `halfrow-station history` lists the runs")]
 pub(super) struct NoSuchRun {
     pub(super) run: String,
+}
+
+/// The run of this id, which must be over, and the hash of its record.
+pub(super) fn over(of: &Snapshot, run: &str) -> Result<(UnitRun, String), Failure> {
+    let found = run_of(of, run)?;
+    let hash = found.as_ref().and_then(|found| found.line.record_sha256.clone());
+    found.zip(hash).ok_or_else(|| Failure::call(NoSuchRun { run: run.to_owned() }))
 }
 
 /// Some evidence of the run is missing or damaged; the rest was copied.
@@ -61,9 +68,7 @@ pub(super) struct EvidenceRemoved {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Arguments { run, data, to } = arguments;
     let snapshot = Snapshot::take(&data.folder())?;
-    let Some(found) = run_of(&snapshot, run)? else {
-        return Err(Failure::call(NoSuchRun { run: run.clone() }));
-    };
+    let (found, _) = over(&snapshot, run)?;
     if found.attachments.is_empty() {
         return print("no evidence was kept of this run; of one that passes none is");
     }

@@ -7,13 +7,13 @@ use clap::Args;
 use halfrow::files::written_aside::{Aside, WriteAsideError, write_aside};
 use halfrow::words::{self, verb};
 
+use super::evidence::over;
 use super::looking::{Filtered, Results};
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
 use crate::export::{self, ExportError, Format, Table};
 use crate::history::runs::{Filter, MOST, page};
-use crate::history::unit::run_of;
 use crate::record::Record;
 use crate::said::Said;
 use crate::store::Snapshot;
@@ -43,18 +43,16 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let snapshot = arguments.results.snapshot()?;
-    match (&arguments.run, &arguments.to) {
-        (Some(run), to) => one(&snapshot, run, arguments.format, to.as_deref()),
-        (None, Some(to)) => all(&snapshot, &arguments.filtered.filter()?, arguments.format, to),
-        (None, None) => Err(Failure::call(anyhow::Error::msg("name a run, or a place with --to"))),
+    let Arguments { run, format, to, filtered, .. } = arguments;
+    if let Some(run) = run {
+        return one(&snapshot, run, *format, to.as_deref());
     }
+    // Without a run, the command line must say where to.
+    all(&snapshot, &filtered.filter()?, *format, to.as_deref().unwrap_or(Path::new(".")))
 }
 
 fn one(of: &Snapshot, run: &str, format: Format, to: Option<&Path>) -> Result<Exit, Failure> {
-    let Some(hash) = run_of(of, run)?.and_then(|run| run.line.record_sha256) else {
-        let what = format!("no run {run} is over; `halfrow-station history` lists the runs");
-        return Err(Failure::call(anyhow::Error::msg(what)));
-    };
+    let (_, hash) = over(of, run)?;
     let bytes = export::run(of, &hash, format)?;
     if let Some(to) = to {
         write_aside(to, false, |file| file.write_all(&bytes)).map_err(unwritten)?;

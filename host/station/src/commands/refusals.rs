@@ -13,6 +13,7 @@ use super::plant::{NoPlant, NoStation};
 use super::publish::PublishError;
 use super::run::NoMock;
 use super::token::NoTokens;
+use super::unit::NoSuchUnit;
 use super::user::NoUsers;
 use super::work::NoWork;
 
@@ -67,6 +68,8 @@ codes::codes! {
     NoStation [station] => "plant-without-station"
     ;
     NoSuchRun [run] => "run-unknown"
+    ;
+    NoSuchUnit [serial] => "unit-never-tested"
     ;
     EvidenceLost [names, run] => "evidence-lost"
     ;

@@ -27,13 +27,18 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// No unit of this serial number was tested here.
+#[derive(Debug, thiserror::Error)]
+#[error("no unit {serial} was tested here; `halfrow-station history` lists the runs")]
+pub(super) struct NoSuchUnit {
+    pub(super) serial: String,
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let snapshot = arguments.results.snapshot()?;
     let units = units(&snapshot, &arguments.serial)?;
     if units.is_empty() {
-        let serial = &arguments.serial;
-        let what = format!("no unit {serial} was tested here; `halfrow-station history` lists the runs");
-        return Err(Failure::call(anyhow::Error::msg(what)));
+        return Err(Failure::call(NoSuchUnit { serial: arguments.serial.clone() }));
     }
     either(&units, arguments.json, |units| {
         let lines = units.iter().flat_map(|unit| unit_lines(unit, &snapshot));

@@ -136,7 +136,21 @@ fn nothing_is_overwritten_by_an_export() {
     assert_eq!(code, 2, "{complained}");
     let (code, _, complained) = did(&made, &["export"]);
     assert_eq!(code, 2, "{complained}");
-    assert_eq!(did(&made, &["export", "nothing"]).0, 2);
+}
+
+/// Of a run that is under way it would not be known yet that no evidence is kept.
+#[test]
+fn a_run_that_is_not_over_has_neither_record_nor_evidence() {
+    let mut made = Made::new();
+    let open = made.run(&Run::of("S1", End::Open));
+    let to = made.folder().path().join("out");
+    for run in [open.as_str(), "nothing"] {
+        for call in [&["export", run][..], &["evidence", run, "--to", to.to_str().unwrap()]] {
+            let (code, said, complained) = did(&made, call);
+            let told = format!("no run {run} is over here");
+            assert!(code == 2 && complained.contains(&told), "{call:?}: {said}{complained}");
+        }
+    }
 }
 
 #[test]
@@ -263,5 +277,5 @@ fn evidence_is_copied_out_under_its_names() {
     assert!(code == 3 && complained.contains("in.txt of the run"), "{complained}");
     assert_eq!(files(&to), [to.join("out.txt")]);
     let (code, _, complained) = copied("0");
-    assert!(code == 2 && complained.contains("there is no run 0 here"), "{complained}");
+    assert!(code == 2 && complained.contains("no run 0 is over here"), "{complained}");
 }
