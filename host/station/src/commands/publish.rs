@@ -134,7 +134,8 @@ pub(super) fn publish(Publish { settings, file, signer }: &Publish) -> Result<Ex
         let version = plan.version.clone();
         return Err(Failure::call(PublishError::OtherContent { plan: name.to_string(), version }));
     }
-    desk.state(&name, &plan.version, &plan.sha256, Some(&bundle))
+    let given = format!("plan publish {name}");
+    desk.state(&given, &name, &plan.version, &plan.sha256, Some(&bundle))
 }
 
 pub(super) fn back(Back { settings, plan, earlier: version, signer }: &Back) -> Result<Exit, Failure> {
@@ -148,7 +149,7 @@ pub(super) fn back(Back { settings, plan, earlier: version, signer }: &Back) -> 
         return Err(Failure::error(PublishError::Untrusted { plan: plan.clone() }));
     }
     look_whole(&mut desk.at, &statement)?;
-    desk.state(&name, version, &statement.sha256, None)
+    desk.state(&format!("plan back {name} {version}"), &name, version, &statement.sha256, None)
 }
 
 impl Signer {
@@ -185,9 +186,10 @@ impl Desk<'_> {
         last.checked_add(1).ok_or_else(|| Failure::error(PublishError::NoNumber { plan: name.to_string() }))
     }
 
-    /// Signs and publishes that this plan holds from now on.
+    /// Signs and publishes that this plan holds from now on, as by the command `given`.
     fn state(
         &mut self,
+        given: &str,
         name: &PlanName,
         version: &str,
         sha256: &str,
@@ -205,7 +207,7 @@ impl Desk<'_> {
             key: self.key.public(),
         };
         let signature = self.key.sign(&statement.text());
-        entered_at(&mut self.at, &self.why.operator, &format!("plan publish {name}"))?;
+        entered_at(&mut self.at, &self.why.operator, given)?;
         if !self.at.publish(&statement, &signature, bundle)? {
             return Err(Failure::error(PublishError::TooLate { plan: name.to_string() }));
         }

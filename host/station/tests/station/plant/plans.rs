@@ -169,6 +169,9 @@ fn a_plan_comes_to_the_station_with_its_files_and_an_older_one_can_hold_again() 
     let acts = made.server.rows("SELECT act, subject, detail FROM audit WHERE act != 'command' ORDER BY id");
     assert_eq!(acts[0], ["publish plan", "CAM-T/quick 1", "better frames"]);
     assert_eq!(acts.len(), 3);
+    let given = made.server.rows("SELECT subject FROM audit WHERE act = 'command' ORDER BY id");
+    let last: Vec<_> = given.iter().flatten().map(String::as_str).skip(given.len() - 2).collect();
+    assert_eq!(last, ["plan publish CAM-T/quick", "plan back CAM-T/quick 1"]);
 }
 
 /// The settings name plans that only a plant with tables can have.
