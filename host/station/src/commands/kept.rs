@@ -18,8 +18,8 @@ use crate::store::{Folder, Store};
 
 /// Copy all that the station has kept to a new folder, while runs go on
 ///
-/// The copy is checked as `restore` checks it. Exit codes: 0 it can be restored, 3 it was not made, or is kept and has
-/// faults.
+/// The copy is checked as `restore` checks it. Exit codes: 0 it can be restored, 2 there are no results, or the folder is not
+/// empty, 3 it was not made, or is kept and has faults, 4 another copy is being made there.
 #[derive(Debug, Args)]
 pub(super) struct Backup {
     /// The folder, which must be new or empty
