@@ -9,15 +9,16 @@ use std::time::{Duration, Instant};
 use halfrow::verdict::StoppedBy;
 
 use super::bay::{self, Shared, StopAsked};
-use super::in_turn::{InTurn, NotStarted, Shows};
-use super::known::{Known, KnownOfLanes};
+use super::in_turn::{NotStarted, Shows};
+use super::known::{Known, KnownOfLane};
 use super::news::{LaneState, News};
+use super::of_lane::OfLane;
 use super::unsent;
 use super::{Input, LaneEvent, LiveState, in_time};
 use crate::clock;
 use crate::floor::{Accepted, Effect, Event, Floor, Owes, ScanError, ScanOutcome, Shown, Word};
 use crate::labgrid;
-use crate::presence::{Presence, USB};
+use crate::presence::USB;
 use crate::said::{Said, Saying};
 use crate::settings::{PlanFile, Settings};
 use crate::store::{AgainError, Folder, InLane, Owed};
@@ -30,41 +31,21 @@ pub(super) struct AtWork {
     floor: Floor,
     shared: Arc<Shared>,
     live: Arc<Mutex<LiveState>>,
-    presence: Vec<Presence>,
-    stops: Vec<StopAsked>,
-    /// For each lane, the unit that passed already and that somebody was asked to scan once more.
-    asked: Vec<Option<String>>,
-    /// What is known of what each lane owes its shift.
-    known: KnownOfLanes,
-    /// For each lane, the run that there was no thread to save.
-    unrecovered: Vec<Option<String>>,
-    hooks: Vec<InTurn>,
+    lanes: Vec<OfLane>,
     threads: Vec<JoinHandle<()>>,
     begun: Instant,
 }
 
 impl AtWork {
     pub(super) fn new(floor: Floor, shared: Arc<Shared>, live: Arc<Mutex<LiveState>>) -> Self {
-        let lanes = floor.lanes().len();
-        Self {
-            floor,
-            shared,
-            live,
-            presence: vec![Presence::default(); lanes],
-            stops: vec![StopAsked::default(); lanes],
-            asked: vec![None; lanes],
-            known: KnownOfLanes::nothing(lanes),
-            unrecovered: vec![None; lanes],
-            hooks: (0..lanes).map(|_| InTurn::new()).collect(),
-            threads: Vec::new(),
-            begun: Instant::now(),
-        }
+        let lanes = floor.lanes().iter().map(|_| OfLane::new()).collect();
+        Self { floor, shared, live, lanes, threads: Vec::new(), begun: Instant::now() }
     }
 
     /// Works until it is told to close and every run is over.
     pub(super) fn run(mut self, inbox: &Receiver<Input>) {
         // An earlier start may have left a lamp on.
-        (0..self.hooks.len()).for_each(|lane| self.hook(lane, None));
+        (0..self.lanes.len()).for_each(|lane| self.hook(lane, None));
         let (mut looked, mut is_closing) = (None::<Instant>, false);
         while !(is_closing && self.is_idle()) {
             self.works();
@@ -89,7 +70,7 @@ impl AtWork {
                 Input::Heard { lane, heard } => self.heard(lane, heard),
                 Input::Close(by) => {
                     is_closing = true;
-                    (0..self.stops.len()).for_each(|lane| self.stop(lane, by));
+                    (0..self.lanes.len()).for_each(|lane| self.stop(lane, by));
                 }
             }
         }
@@ -104,8 +85,8 @@ impl AtWork {
     /// Waits for hooks, recoveries and what labgrid lent, and publishes what hooks still report.
     fn end(mut self, inbox: &Receiver<Input>) {
         // Nobody would put a lamp out over the next board.
-        (0..self.hooks.len()).for_each(|lane| self.hook(lane, None));
-        let hooks = std::mem::take(&mut self.hooks).into_iter().flat_map(InTurn::into_threads);
+        (0..self.lanes.len()).for_each(|lane| self.hook(lane, None));
+        let hooks = std::mem::take(&mut self.lanes).into_iter().flat_map(|of| of.hooks.into_threads());
         for thread in std::mem::take(&mut self.threads).into_iter().chain(hooks) {
             if thread.join().is_err() {
                 tracing::error!("a thread of a lane ended early; look at what it said before");
@@ -131,14 +112,14 @@ impl AtWork {
     /// Checks which boards are there, and tries again to save the runs that there was no thread for.
     fn look(&mut self) {
         self.check_due();
-        for lane in 0..self.unrecovered.len() {
-            let run = self.unrecovered.get_mut(lane).and_then(Option::take);
+        for lane in 0..self.lanes.len() {
+            let run = self.lanes.get_mut(lane).and_then(|of| of.unrecovered.take());
             self.effect(lane, run.map(|run| Effect::Recover { run }));
         }
         let now = self.now();
-        let lanes = self.shared.settings.lanes.iter().zip(&mut self.presence).enumerate();
-        let changed = lanes.filter_map(|(lane, (settings, presence))| {
-            Some((lane, presence.look(settings.board.is_there(Path::new(USB)), now)?))
+        let lanes = self.shared.settings.lanes.iter().zip(&mut self.lanes).enumerate();
+        let changed = lanes.filter_map(|(lane, (settings, of))| {
+            Some((lane, of.presence.look(settings.board.is_there(Path::new(USB)), now)?))
         });
         let changed: Vec<_> = changed.collect();
         for (lane, effect) in self.floor.looked(&changed, now) {
@@ -175,7 +156,9 @@ impl AtWork {
     /// Asks what a lane owes; returns why the store failed, if it did.
     fn check(&mut self, lane: usize) -> Option<Said> {
         let (owed, known) = self.owed(lane);
-        self.known.told(lane, known, Instant::now());
+        if let Some(of) = self.lanes.get_mut(lane) {
+            of.known.told(known, Instant::now());
+        }
         let failed = owed.as_ref().filter(|_| matches!(known, Known::Untold(_))).map(|owes| owes.why.clone());
         self.happened(lane, Event::Owes(owed));
         failed
@@ -186,13 +169,16 @@ impl AtWork {
     /// and those that waited longest are asked about next.
     fn check_due(&mut self) {
         let mut failed = None::<Said>;
-        for lane in self.known.due(clock::now_ms(), Instant::now()) {
+        let known = self.lanes.iter().map(|of| &of.known);
+        for lane in KnownOfLane::due(known, clock::now_ms(), Instant::now()) {
             let passed_over = failed.clone().zip(self.with_shift(lane));
             let Some((why, plan)) = passed_over else {
                 failed = self.check(lane).or(failed);
                 continue;
             };
-            self.known.passed_over(lane, Instant::now());
+            if let Some(of) = self.lanes.get_mut(lane) {
+                of.known.passed_over(Instant::now());
+            }
             self.happened(lane, Event::Owes(Some(Owes { plan, serial: None, why })));
         }
     }
@@ -284,7 +270,7 @@ impl AtWork {
     /// ask for its label once more then; if the next scan in the lane is of the same label, it is tested.
     fn why_not(&mut self, lane: usize, of: &Accepted) -> Option<Said> {
         let PlanFile { plan, .. } = self.shared.settings.plans.get(of.plan)?;
-        let asked = self.asked.get_mut(lane)?;
+        let asked = &mut self.lanes.get_mut(lane)?.asked;
         let was_asked = asked.take().as_ref() == Some(&of.serial);
         let folder = Folder::new(&self.shared.settings.data);
         if let Some(why) = unsent::refuses(&self.shared.settings, &folder) {
@@ -330,8 +316,8 @@ impl AtWork {
             Effect::Begin(_) => self.happened(lane, Event::NotBegun { why }),
             Effect::Recover { run } => {
                 tracing::warn!("the run {run} is not saved yet: {why}");
-                if let Some(unrecovered) = self.unrecovered.get_mut(lane) {
-                    *unrecovered = Some(run);
+                if let Some(of) = self.lanes.get_mut(lane) {
+                    of.unrecovered = Some(run);
                 }
             }
             Effect::Hooks(_) | Effect::Stop => {}
@@ -345,14 +331,15 @@ impl AtWork {
 
     /// Starts the hooks for what is shown, or for that nothing is any more, or reports why not.
     fn hook(&mut self, lane: usize, shown: Option<Shown>) {
-        let (of, run) =
+        let (on, run) =
             (shown.as_ref().map(|shown| shown.verdict), shown.as_ref().map(|shown| shown.run.clone()));
-        let Some(turns) = self.hooks.get_mut(lane).filter(|_| self.shared.hooks(of).next().is_some()) else {
+        let Some(of) = self.lanes.get_mut(lane).filter(|_| self.shared.hooks(on).next().is_some()) else {
             return;
         };
         let shared = Arc::clone(&self.shared);
         let shows = if shown.is_some() { Shows::Verdict } else { Shows::Nothing };
-        let begun = turns
+        let begun = of
+            .hooks
             .begin(shows, format!("hooks of lane {lane}"), move || bay::hook(&shared, lane, shown.as_ref()));
         let why = match begun {
             Ok(()) => return,
@@ -364,16 +351,16 @@ impl AtWork {
 
     fn begin(&mut self, lane: usize, accepted: Accepted) -> std::io::Result<JoinHandle<()>> {
         let stop = StopAsked::default();
-        if let Some(place) = self.stops.get_mut(lane) {
-            *place = Arc::clone(&stop);
+        if let Some(of) = self.lanes.get_mut(lane) {
+            of.stop = Arc::clone(&stop);
         }
         bay::begin(&self.shared, lane, accepted, stop)
     }
 
     fn stop(&mut self, lane: usize, by: Option<StoppedBy>) {
-        if let Some((stop, by)) = self.stops.get(lane).zip(by) {
+        if let Some((of, by)) = self.lanes.get(lane).zip(by) {
             // Only the first request counts.
-            let _ = stop.set(by);
+            let _ = of.stop.set(by);
         }
     }
 

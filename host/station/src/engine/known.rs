@@ -28,46 +28,34 @@ impl Known {
     }
 }
 
-/// What is known of every lane.
-#[derive(Debug)]
-pub(super) struct KnownOfLanes {
-    known: Vec<Known>,
-    /// When each was asked about last.
-    asked: Vec<Option<Instant>>,
+/// What is known of a lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct KnownOfLane {
+    known: Known,
+    /// When it was asked about last.
+    asked: Option<Instant>,
 }
 
-impl KnownOfLanes {
-    /// Of so many lanes, of which nothing is known.
-    pub(super) fn nothing(lanes: usize) -> Self {
-        Self { known: vec![Known::Nothing; lanes], asked: vec![None; lanes] }
-    }
+impl KnownOfLane {
+    /// A lane of which nothing is known.
+    pub(super) const NOTHING: Self = Self { known: Known::Nothing, asked: None };
 
-    /// The lanes that are to be asked about, first those that were not asked about for longest: lanes about which the store fails
-    /// let every other one have its turn.
-    pub(super) fn due(&self, now_ms: i64, now: Instant) -> Vec<usize> {
-        let lanes = self.known.iter().zip(&self.asked).enumerate();
-        let mut due: Vec<_> = lanes.filter(|(_, (known, _))| known.is_due(now_ms, now)).collect();
-        due.sort_by_key(|(_, (_, asked))| **asked);
+    /// Those of `lanes` that are to be asked about, first those that were not asked about for longest: lanes about which the store
+    /// fails let every other one have its turn.
+    pub(super) fn due<'a>(lanes: impl Iterator<Item = &'a Self>, now_ms: i64, now: Instant) -> Vec<usize> {
+        let mut due: Vec<_> = lanes.enumerate().filter(|(_, of)| of.known.is_due(now_ms, now)).collect();
+        due.sort_by_key(|(_, of)| of.asked);
         due.into_iter().map(|(lane, _)| lane).collect()
     }
 
-    /// Notes what is known of a lane that was asked about just `now`.
-    pub(super) fn told(&mut self, lane: usize, now_known: Known, now: Instant) {
-        self.note(lane, now_known);
-        if let Some(asked) = self.asked.get_mut(lane) {
-            *asked = Some(now);
-        }
+    /// Notes what is known of it, after it was asked about just `now`.
+    pub(super) fn told(&mut self, known: Known, now: Instant) {
+        *self = Self { known, asked: Some(now) };
     }
 
-    /// Notes that a lane was not asked about, since the store had just failed about another one.
-    pub(super) fn passed_over(&mut self, lane: usize, now: Instant) {
-        self.note(lane, Known::Untold(now));
-    }
-
-    fn note(&mut self, lane: usize, now_known: Known) {
-        if let Some(known) = self.known.get_mut(lane) {
-            *known = now_known;
-        }
+    /// Notes that it was not asked about, since the store had just failed about another one.
+    pub(super) fn passed_over(&mut self, now: Instant) {
+        self.known = Known::Untold(now);
     }
 }
 
@@ -76,24 +64,24 @@ mod tests {
     use super::*;
 
     /// A store that answers about the lanes from `sound` on, and fails about those before; it is asked `every` so often for a minute,
-    /// as [`KnownOfLanes::due`] says. Returns after how many times each lane was known.
+    /// as [`KnownOfLane::due`] says. Returns after how many times each lane was known.
     fn turns(lanes: usize, sound: usize, every: Duration, first: &[usize]) -> Vec<Option<usize>> {
         let begun = Instant::now();
-        let (mut of, mut known_at) = (KnownOfLanes::nothing(lanes), vec![None; lanes]);
+        let (mut of, mut known_at) = (vec![KnownOfLane::NOTHING; lanes], vec![None; lanes]);
         // What was asked about alone before is due at other times than the rest.
-        first.iter().for_each(|lane| of.told(*lane, Known::Untold(begun), begun));
+        first.iter().for_each(|lane| of[*lane].told(Known::Untold(begun), begun));
         for turn in 0..(60 * REST.as_millis() / every.as_millis()) as usize {
             let now = begun + REST / 2 + every * turn as u32;
             let mut has_failed = false;
-            for lane in of.due(0, now) {
+            for lane in KnownOfLane::due(of.iter(), 0, now) {
                 if has_failed {
-                    of.passed_over(lane, now);
+                    of[lane].passed_over(now);
                 } else if lane < sound {
                     has_failed = true;
-                    of.told(lane, Known::Untold(now), now);
+                    of[lane].told(Known::Untold(now), now);
                 } else {
                     known_at[lane].get_or_insert(turn);
-                    of.told(lane, Known::Between(0, i64::MAX), now);
+                    of[lane].told(Known::Between(0, i64::MAX), now);
                 }
             }
         }

@@ -15,6 +15,7 @@ mod in_turn;
 mod known;
 mod logged;
 mod news;
+mod of_lane;
 mod unsent;
 
 use std::path::PathBuf;

@@ -1,0 +1,33 @@
+//! What the engine keeps of one lane.
+
+use super::bay::StopAsked;
+use super::in_turn::InTurn;
+use super::known::KnownOfLane;
+use crate::presence::Presence;
+
+/// What only the engine's thread has of a lane.
+pub(super) struct OfLane {
+    pub(super) presence: Presence,
+    pub(super) stop: StopAsked,
+    /// The unit that passed already and that somebody was asked to scan once more.
+    pub(super) asked: Option<String>,
+    /// What is known of what it owes its shift.
+    pub(super) known: KnownOfLane,
+    /// The run that there was no thread to save.
+    pub(super) unrecovered: Option<String>,
+    pub(super) hooks: InTurn,
+}
+
+impl OfLane {
+    /// A lane that nothing has happened to yet.
+    pub(super) fn new() -> Self {
+        Self {
+            presence: Presence::default(),
+            stop: StopAsked::default(),
+            asked: None,
+            known: KnownOfLane::NOTHING,
+            unrecovered: None,
+            hooks: InTurn::new(),
+        }
+    }
+}
