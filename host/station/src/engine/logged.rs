@@ -3,50 +3,76 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use halfrow::result::codes::CodeList;
+
+use crate::codes;
 use crate::floor::Event;
 use crate::said::Said;
 
-/// Why the station itself begins no run, as it is counted, with the codes that say so.
-const REASONS: [(&str, &[&str]); 4] = [
-    ("clock", &["clocks-apart", "last-run-dated-ahead"]),
-    ("plan", &["plan-file-other"]),
-    ("plant", &["outbox-too-full"]),
-    ("other", &["thread-missing", "no-randomness", "settings-without-lane-or-plan"]),
-];
-
-/// The reason of all others: the disk is full, or the database is not what it was.
+/// The reason that it is the disk, which is full, or the database, which is not what it was.
 pub(super) const STORE: &str = "store";
 
-/// The codes of reasons that are about one unit, and about nothing at the station.
-const OF_UNITS: [&str; 10] = [
-    "unit-passed-already",
-    "unit-passed-already-asks",
-    "unit-being-judged",
-    "serial-empty",
-    "serial-too-long",
-    "serial-character-wrong",
-    "serial-with-blank",
-    "serial-of-no-product",
-    "serial-reserved",
-    "serial-check-digit-wrong",
+/// The reason of whatever is not sorted.
+const OTHER: &str = "other";
+
+/// Why the station itself begins no run, as it is counted.
+const REASONS: [&str; 5] = ["clock", "plan", "plant", OTHER, STORE];
+
+/// Whose doing it is that no run was begun.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Whose {
+    /// It is about one unit, and about nothing at the station.
+    Unit,
+    /// The station's own, for one of [`REASONS`].
+    Station(&'static str),
+}
+
+/// Whose doing it is by the type of the error that says why, for all codes of the type.
+const BY_TYPE: [(&str, Whose); 7] = [
+    ("SerialError", Whose::Unit),
+    ("AgainError", Whose::Unit),
+    ("StoreError", Whose::Station(STORE)),
+    ("BlobError", Whose::Station(STORE)),
+    ("RecordError", Whose::Station(STORE)),
+    ("CertificateError", Whose::Station("plant")),
+    ("NoRandomness", Whose::Station(OTHER)),
+];
+
+/// The same by the code, where that says more than the type.
+const BY_CODE: [(&str, Whose); 8] = [
+    ("unit-being-judged", Whose::Unit),
+    ("clocks-apart", Whose::Station("clock")),
+    ("last-run-dated-ahead", Whose::Station("clock")),
+    ("plan-file-other", Whose::Station("plan")),
+    ("outbox-too-full", Whose::Station("plant")),
+    ("disk-too-full", Whose::Station(STORE)),
+    ("thread-missing", Whose::Station(OTHER)),
+    ("settings-without-lane-or-plan", Whose::Station(OTHER)),
 ];
 
 /// Every reason that is counted.
 pub(super) fn reasons() -> impl Iterator<Item = &'static str> {
-    REASONS.iter().map(|(reason, _)| *reason).chain([STORE])
+    REASONS.into_iter()
 }
 
 /// Why no run was begun, unless that is about one unit.
 fn reason(why: &Said) -> Option<&'static str> {
-    if has_any(why, &OF_UNITS) {
-        return None;
+    match sorted(why) {
+        Some(Whose::Unit) => None,
+        Some(Whose::Station(reason)) => Some(reason),
+        None => Some(OTHER),
     }
-    let named = REASONS.iter().find(|(_, codes)| has_any(why, codes));
-    Some(named.map_or(STORE, |(reason, _)| *reason))
 }
 
-fn has_any(said: &Said, codes: &[&str]) -> bool {
-    codes.contains(&said.code.as_str()) || said.causes.iter().any(|cause| has_any(cause, codes))
+/// Whose doing it is, as the error says, or else its causes.
+fn sorted(why: &Said) -> Option<Whose> {
+    let of_type = || {
+        let has = |list: &&CodeList| list.codes.iter().any(|(code, _)| *code == why.code);
+        let list = codes::lists().find(has)?;
+        BY_TYPE.iter().find(|(error, _)| *error == list.error)
+    };
+    let found = BY_CODE.iter().find(|(code, _)| *code == why.code).or_else(of_type);
+    found.map(|(_, whose)| *whose).or_else(|| why.causes.iter().find_map(sorted))
 }
 
 /// The state of a lane, as far as the log has reported it.
@@ -118,11 +144,29 @@ mod tests {
     }
 
     #[test]
-    fn every_code_that_decides_what_is_counted_exists() {
-        let known = crate::codes::all();
-        for code in REASONS.iter().flat_map(|(_, codes)| *codes).chain(&OF_UNITS) {
-            assert!(known.contains(&(*code).into()), "{code}");
+    fn every_code_and_type_that_decides_what_is_counted_exists() {
+        let known = codes::all();
+        assert!(BY_CODE.iter().all(|(code, _)| known.contains(&(*code).into())), "{BY_CODE:?}");
+        for (error, _) in BY_TYPE {
+            assert!(codes::lists().any(|list| list.error == error), "{error}");
         }
+        for (_, whose) in BY_TYPE.into_iter().chain(BY_CODE) {
+            assert!(!matches!(whose, Whose::Station(reason) if !REASONS.contains(&reason)), "{whose:?}");
+        }
+    }
+
+    /// What is not sorted must not send anybody to the disk.
+    #[test]
+    fn what_is_counted_follows_from_what_the_error_is_about() {
+        let counted = |code: &str| reason(&Said { code: code.to_owned(), ..Said::uncoded(String::new()) });
+        let of = |error: &str| codes::lists().find(|list| list.error == error).unwrap().codes;
+        for (code, _) in of("SerialError").iter().chain(of("AgainError")) {
+            assert_eq!(counted(code), None, "{code}");
+        }
+        let of_store =
+            of("StoreError").iter().map(|(code, _)| counted(code)).filter(|of| *of == Some("store"));
+        assert_eq!(of_store.count() + 3, of("StoreError").len(), "a unit and two clocks");
+        assert_eq!(["board-held", "lane-busy", ""].map(counted), [Some("other"); 3]);
     }
 
     #[test]
