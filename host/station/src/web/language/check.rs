@@ -18,7 +18,7 @@ const SAID: &str = "said";
 const REMEDY: &str = "remedy";
 
 /// The types of the station's errors that operators, or engineers at a page, may see.
-const OF_STATION: [&str; 19] = [
+const OF_STATION: [&str; 22] = [
     "SerialError",
     "ScanError",
     "Refusal",
@@ -36,6 +36,9 @@ const OF_STATION: [&str; 19] = [
     "RebindError",
     "NoWaiver",
     "HookError",
+    "SecretError",
+    "WorkError",
+    "Lost",
     "Saying",
     "UnknownBarcode",
 ];
