@@ -71,6 +71,11 @@ impl SettingsFile {
         path::absolute(&self.settings).map_err(Failure::call)
     }
 
+    /// Loads them.
+    pub(super) fn load(&self) -> Result<Settings, Failure> {
+        settings(&self.settings)
+    }
+
     /// Loads them by [`load_without_lanes`].
     pub(super) fn load_without_lanes(&self) -> Result<Settings, Failure> {
         load_without_lanes(&self.settings)

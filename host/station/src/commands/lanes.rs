@@ -1,7 +1,6 @@
 //! `halfrow-station lanes`
 
 use std::io::{self, BufRead};
-use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::Duration;
 use std::{iter, thread};
@@ -10,7 +9,7 @@ use clap::Args;
 use halfrow::words::plain;
 
 use super::Failure;
-use super::beginning::{Disk, Ready, outbox, settings};
+use super::beginning::{Disk, Ready, SettingsFile, outbox};
 use super::publish::fetch_at_start;
 use crate::console;
 use crate::engine::News;
@@ -27,9 +26,8 @@ const LOOK: Duration = Duration::from_millis(100);
 /// once.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The station's settings
-    #[arg(long, value_name = "FILE", env = "HALFROW_STATION_SETTINGS")]
-    settings: PathBuf,
+    #[command(flatten)]
+    settings: SettingsFile,
     /// Who tests
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
     operator: String,
@@ -39,7 +37,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     fetch_at_start(&arguments.settings)?;
-    let settings = settings(&arguments.settings)?;
+    let settings = arguments.settings.load()?;
     let ready = Ready::of(&settings, &arguments.disk)?;
     let signal = ready.signal.clone();
     let engine = ready.start()?;

@@ -1,6 +1,6 @@
 //! What `halfrow-station plan` does with plans that the plant publishes.
 
-use std::path::{self, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
@@ -258,9 +258,8 @@ pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
 
 /// Fetches them when a station begins its work. If that fails, the station goes on with the copies that it has, unless
 /// one is missing.
-pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
-    let path = path::absolute(path).map_err(Failure::call)?;
-    let Ok(published) = Settings::plans_of_plant(&path) else { return Ok(()) };
+pub(super) fn fetch_at_start(settings: &SettingsFile) -> Result<(), Failure> {
+    let Ok(published) = Settings::plans_of_plant(&settings.path()?) else { return Ok(()) };
     if published.plans.is_empty() {
         return Ok(());
     }

@@ -1,14 +1,13 @@
 //! `halfrow-station serve`
 
 use std::io;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use clap::Args;
 
 use super::Failure;
-use super::beginning::{Disk, Ready, outbox, settings};
+use super::beginning::{Disk, Ready, SettingsFile, outbox};
 use super::notify::Notify;
 use super::publish::fetch_at_start;
 use crate::console;
@@ -26,9 +25,8 @@ const TELL: Duration = Duration::from_secs(1);
 /// Prints where the pages are. systemd is told when it is ready, and every second that it works. A signal ends the runs that are under way, and the program.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The station's settings
-    #[arg(long, value_name = "FILE", env = "HALFROW_STATION_SETTINGS")]
-    settings: PathBuf,
+    #[command(flatten)]
+    settings: SettingsFile,
     /// Who tests, at a station where nobody logs in
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
     operator: String,
@@ -38,7 +36,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     fetch_at_start(&arguments.settings)?;
-    let settings = settings(&arguments.settings)?;
+    let settings = arguments.settings.load()?;
     let everybody = User { name: arguments.operator.clone(), who: Who::Operator };
     let served = Served { settings: &settings, disk: &arguments.disk, everybody, hints: Vec::new() };
     serve(served, |_| Ok(()))

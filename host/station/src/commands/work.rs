@@ -47,7 +47,7 @@ pub(super) struct Arguments {
 pub(super) struct NoWork;
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    fetch_at_start(&arguments.settings.path()?)?;
+    fetch_at_start(&arguments.settings)?;
     let settings = arguments.settings.load_without_lanes()?;
     let address = plant(&settings)?.address()?;
     let worker = worker(&settings)?;

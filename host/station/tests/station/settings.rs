@@ -2,13 +2,14 @@
 
 use std::fs;
 use std::os::unix::fs::symlink;
+use std::process::Command;
 use std::time::Duration;
 
 use halfrow::Verdict;
 use halfrow_station::floor::Starts;
 use halfrow_station::settings::{Destination, Settings, SinkSettings};
 
-use crate::common::PLAN;
+use crate::common::{Did, PLAN, program};
 
 /// Settings that use every key.
 const WHOLE: &str = r#"schema = 1
@@ -348,4 +349,16 @@ fn the_page_names_every_key() {
     all.sort();
     named.sort();
     assert_eq!(named, all);
+}
+
+/// Whoever stands beside it need not name it for one command and not for the next.
+#[test]
+fn every_command_finds_the_settings_where_it_is_called() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("station.toml"), "schema = 9\n").unwrap();
+    for command in ["lanes", "serve", "work"] {
+        let mut call = Command::new(program());
+        let did: Did = call.arg(command).current_dir(folder.path()).output().unwrap().into();
+        assert!(did.code == Some(2) && did.complained.contains("station.toml:1: "), "{command}: {did:?}");
+    }
 }
