@@ -36,10 +36,8 @@ async fn page(
     visit: Visit,
     Fields(asked): Fields<JobFilter>,
 ) -> Result<Response, Trouble> {
-    let states: Vec<_> = match STATES.into_iter().find(|state| *state == asked.state) {
-        Some(state) => vec![state],
-        None => STATES.to_vec(),
-    };
+    let chosen = STATES.into_iter().find(|state| *state == asked.state);
+    let states = chosen.map_or_else(|| STATES.to_vec(), |state| vec![state]);
     let after = asked.after.clone();
     let found = app
         .look(&visit, move |now| Ok((jobs(now, &states, &after, MOST)?, boards(now)?, waiters(now)?)))
@@ -47,10 +45,10 @@ async fn page(
     let (jobs, boards, waiting) = found;
     let content = html! {
         h1 { (visit.say("jobs.title")) }
-        (states_to_choose(&visit, &asked.state))
+        (states_to_choose(&visit, chosen))
         @if jobs.is_empty() { p.nothing { (visit.say("jobs.none")) } } @else { (table(&visit, &jobs)) }
         @if let Some(last) = jobs.last().filter(|_| jobs.len() == MOST as usize) {
-            p { a href=(format!("/jobs?state={}&after={}", asked.state, last.id)) { (visit.say("jobs.more")) } }
+            p { a href=(format!("/jobs?state={}&after={}", chosen.unwrap_or_default(), last.id)) { (visit.say("jobs.more")) } }
         }
         h2 { (visit.say("jobs.boards")) }
         @if boards.is_empty() { p.nothing { (visit.say("jobs.no_boards")) } } @else { (shelf(&visit, &boards)) }
@@ -61,13 +59,13 @@ async fn page(
 }
 
 /// A link for each state and one for all.
-fn states_to_choose(visit: &Visit, chosen: &str) -> Markup {
+fn states_to_choose(visit: &Visit, chosen: Option<&str>) -> Markup {
     html! {
         p {
-            a href="/jobs" aria-current=[chosen.is_empty().then_some("true")] { (visit.say("jobs.all")) }
+            a href="/jobs" aria-current=[chosen.is_none().then_some("true")] { (visit.say("jobs.all")) }
             @for state in STATES {
                 " · "
-                a href=(format!("/jobs?state={state}")) aria-current=[(state == chosen).then_some("true")] {
+                a href=(format!("/jobs?state={state}")) aria-current=[(chosen == Some(state)).then_some("true")] {
                     (state_word(visit, state))
                 }
             }

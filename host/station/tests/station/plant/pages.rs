@@ -186,6 +186,10 @@ fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
     let after = page.split("&amp;after=").nth(1).unwrap().split('"').next().unwrap();
     let older = text(&browser, &format!("/jobs?state=&after={after}"));
     assert_eq!(older.matches("any ulx3s").count(), 2);
+    // What is no state asks for all, and adds nothing to the link.
+    let other = text(&browser, "/jobs?state=x%26after%3D0%23");
+    let link = other.split("href=\"/jobs?state=").find(|link| link.contains("after=")).unwrap();
+    assert!(link.starts_with(&format!("&amp;after={after}\"")), "{link}");
     assert_eq!(text(&browser, "/jobs?state=claimed").matches("any ulx3s").count(), 1);
     assert!(text(&browser, "/jobs?state=done").contains("There is no such job"));
 }
