@@ -101,7 +101,8 @@ impl EventSink {
         address: &SinkAddress,
         login: Option<&Login>,
     ) -> Result<Self, SinkSettingsError> {
-        let client = format!("halfrow-{station}-{name}");
+        // No sink's name has a dot, so the station's is all that is before the last one.
+        let client = format!("halfrow-{station}.{name}");
         let mut options = MqttOptions::new(client, (address.host.clone(), address.port));
         options.set_keep_alive(ALIVE).set_clean_session(true);
         options.set_max_packet_size(options.max_packet_size(), MOST);
@@ -222,6 +223,8 @@ impl Sink for EventSink {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use serde_json::{Value, json};
 
     use super::*;
@@ -272,7 +275,8 @@ mod tests {
     /// A broker ends the earlier of two connections with the same client id (MQTT 3.1.1, section 3.1.4).
     #[test]
     fn two_sinks_are_two_clients_of_a_broker() {
-        let [one, other] = ["wall", "office"].map(|name| sink(name, "12", "/").options.client_id());
-        assert_ne!(one, other);
+        let clients = [("wall", "12"), ("office", "12"), ("c", "a-b"), ("b-c", "a"), ("c", "a.b")];
+        let ids = clients.map(|(name, station)| sink(name, station, "/").options.client_id());
+        assert_eq!(BTreeSet::from(ids.clone()).len(), clients.len(), "{ids:?}");
     }
 }
