@@ -15,7 +15,7 @@ use serde_json::json;
 use super::beginning::{SettingsFile, Signal};
 use super::looking::{either, table, time};
 use super::plant::plant;
-use super::why::{Why, at_plant, person};
+use super::why::{Why, at_plant, name, person};
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
@@ -70,21 +70,22 @@ enum Action {
 #[derive(Debug, Args)]
 struct Share {
     /// Its name
+    #[arg(value_parser = name)]
     name: String,
     /// Its kind: whoever needs any board asks for a kind
-    #[arg(long)]
+    #[arg(long, value_parser = name)]
     kind: String,
     /// Where it is, as `halfrow boards` names it
     #[arg(long, value_name = "TARGET")]
     board: Target,
     /// The product that it is a unit of, for jobs
-    #[arg(long, requires = "serial")]
+    #[arg(long, requires = "serial", value_parser = name)]
     product: Option<String>,
     /// Its serial number, for jobs
-    #[arg(long, requires = "product")]
+    #[arg(long, requires = "product", value_parser = name)]
     serial: Option<String>,
     /// The one station that reaches it [default: every one does]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = name)]
     station: Option<String>,
     /// Your name, which the audit keeps
     #[arg(long, value_name = "NAME", value_parser = person)]

@@ -8,7 +8,7 @@ use halfrow_program::number::counted;
 use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
 use super::plant::plant;
-use super::why::{Why, at_plant, person};
+use super::why::{Why, at_plant, name, person};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::plan::Plan;
@@ -60,7 +60,7 @@ struct Add {
     #[arg(long, required_unless_present = "kind", conflicts_with = "kind")]
     serial: Option<String>,
     /// Any board of this kind
-    #[arg(long)]
+    #[arg(long, value_parser = name)]
     kind: Option<String>,
     /// What a station must have, as its settings name it; may be given several times
     #[arg(long, value_name = "WORD")]

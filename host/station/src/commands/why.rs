@@ -32,6 +32,11 @@ pub(super) fn person(text: &str) -> Result<String, String> {
     some(text, "say who you are")
 }
 
+/// The name of something, which blanks are not.
+pub(super) fn name(text: &str) -> Result<String, String> {
+    some(text, "write a name")
+}
+
 /// The text without blanks around it, or what is asked for in its place.
 fn some(text: &str, asked: &str) -> Result<String, String> {
     let text = text.trim();

@@ -52,7 +52,9 @@ fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
     let added = add(&["--kind", "mock", "--count", "2", "--needs", "camera"]);
     let ids: Vec<_> = added.said.lines().map(str::to_owned).collect();
     assert_eq!(ids.len(), 2, "{added:?}");
-    let wrong: [&[&str]; 4] = [
+    let wrong: [&[&str]; 6] = [
+        &["--kind", ""],
+        &["--kind", " "],
         &["--serial", "XXX"],
         &["--kind", "mock", "--needs", "two words"],
         &["--kind", "mock", "--count", "0"],
@@ -119,6 +121,21 @@ fn boards_are_shared_changed_and_listed_by_commands_that_the_audit_keeps() {
     assert_eq!(engineer.acts(), ["share board", "board out", "board in", "unshare board"]);
     let called = ["share", "out", "in", "unshare", "out"].map(|act| format!("board {act} shelf-1"));
     assert_eq!(engineer.commands(), called);
+}
+
+/// Otherwise the plant would refuse them, which names no argument.
+#[test]
+fn a_board_is_shared_by_names_that_are_not_empty() {
+    let engineer = Engineer::new();
+    let right = [("--kind", "mock"), ("--product", "CAM-T"), ("--serial", "CAT00001"), ("--station", "12")];
+    for (empty, _) in right {
+        let with = |(option, name)| [option, if option == empty { " " } else { name }];
+        let names: Vec<_> = right.into_iter().flat_map(with).collect();
+        let share = ["board", "share", "shelf-1", "--operator", "engel", "--board", "mock"];
+        let did = engineer.did(&[&share[..], &names].concat());
+        assert!(did.code == Some(2) && did.complained.contains(empty), "{empty}: {did:?}");
+    }
+    assert!(engineer.did(&["board", "list"]).said.contains("no board is shared"));
 }
 
 /// Whoever else got it would judge its own board under this one's serial number.
