@@ -244,7 +244,7 @@ impl AtWork {
 
     fn happened(&mut self, lane: usize, event: Event) {
         self.shared.note(lane, &event);
-        let effect = self.floor.happened(lane, event, self.now());
+        let effect = self.floor.happened(lane, event);
         self.carry_out(lane, effect);
     }
 
@@ -262,7 +262,7 @@ impl AtWork {
         let Some(why) = self.why_not(lane, of) else { return Ok(effect) };
         let not_begun = Event::NotBegun { why: why.clone() };
         self.shared.note(lane, &not_begun);
-        self.floor.happened(lane, not_begun, self.now());
+        self.floor.happened(lane, not_begun);
         Err(why)
     }
 

@@ -191,7 +191,6 @@ impl Lane {
     /// [`Refusal`] when it cannot be now; nothing has changed then.
     pub fn take(&mut self, event: Event) -> Result<Option<Effect>, Refusal> {
         match event {
-            Event::Present(is_present) => Ok(self.present(is_present)),
             Event::Given(accepted) => self.given(accepted),
             Event::Start { operator } => self.start(operator),
             Event::Abort => self.abort(),
@@ -235,7 +234,8 @@ impl Lane {
         Effect::Begin(of)
     }
 
-    fn present(&mut self, is_present: bool) -> Option<Effect> {
+    /// Takes that a board came, or went away.
+    pub(super) fn present(&mut self, is_present: bool) -> Option<Effect> {
         if is_present && !self.is_present {
             self.came();
         }

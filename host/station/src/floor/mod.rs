@@ -242,12 +242,8 @@ impl Floor {
         Ok(ScanOutcome { lane: Some(lane), effect, said: said.into() })
     }
 
-    /// Takes what happened to a lane at the time `now`.
-    pub fn happened(&mut self, lane: usize, event: Event, now: Duration) -> Option<Effect> {
-        if let Event::Present(is_present) = event {
-            let effects = self.looked(&[(lane, is_present)], now);
-            return effects.into_iter().find_map(|(of, effect)| effect.filter(|_| of == lane));
-        }
+    /// Takes what happened to a lane. Boards that come and go are [`Self::looked`] at.
+    pub fn happened(&mut self, lane: usize, event: Event) -> Option<Effect> {
         self.lanes.get_mut(lane)?.take(event).ok()?
     }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Effect, Event, Floor, ScanError, ScanOutcome};
+use super::{Effect, Floor, ScanError, ScanOutcome};
 use crate::said::{Said, Saying};
 
 /// How long a serial number waits for a lane.
@@ -41,7 +41,7 @@ impl Floor {
         for &(place, is_present) in changes {
             let Some(lane) = self.lanes.get_mut(place) else { continue };
             let is_new = is_present && !lane.is_present();
-            let effect = lane.take(Event::Present(is_present)).ok().flatten();
+            let effect = lane.present(is_present);
             // A board that starts a run by itself has its serial number already.
             if is_new && effect.is_none() {
                 came.push(place);
@@ -72,7 +72,7 @@ impl Floor {
         match given {
             // Some lanes are started by plugging the board in.
             Ok((lane, effect)) => {
-                let begun = effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?);
+                let begun = effect.or_else(|| self.lanes.get_mut(lane)?.present(true));
                 Some((lane, begun?))
             }
             Err(refused) => {

@@ -146,8 +146,6 @@ impl Word {
 /// What happens to a lane.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A board came, or went away.
-    Present(bool),
     /// A serial number for it.
     Given(Accepted),
     /// The button was pressed.

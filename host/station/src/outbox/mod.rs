@@ -23,12 +23,13 @@ pub use plant::PlantSink;
 pub(crate) use sent::{Sent, awaited};
 pub(crate) use sinks::SinkError;
 pub use sinks::{SinkSettingsError, open};
+pub use standing::Standing;
 
 use crate::clock;
 use crate::guard::guarded;
 use crate::said::Said;
 use crate::store::{Entry, Folder, Parcel, SharedStore, Snapshot, StoreError, Tried, Unsent};
-use standing::{Backlog, Standing};
+use standing::Backlog;
 
 /// How often to check whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
@@ -91,12 +92,17 @@ pub struct Round {
 }
 
 /// Gives `sink` what is due for it, and keeps what became of it: an entry that the sink has is noted without waiting
-/// for all that follow.
+/// for all that follow. How the sink is, is logged where it differs from its `standing`.
 ///
 /// # Errors
 /// [`StoreError`] when the store cannot be read or written. What was sent is then sent again, which changes nothing.
-pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
-    logged_round(store, sink, &mut Standing::default())
+pub fn round(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) -> Result<Round, StoreError> {
+    let due = folder(store).due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)?;
+    let round = given(store, sink, due, |name, entry, why| standing.refused(name, entry, why))?;
+    if round.sent + round.failed > 0 && !round.is_away {
+        standing.there(sink.name(), round.sent, || left(store, sink));
+    }
+    Ok(round)
 }
 
 /// Gives `sink` all that it does not have, each entry once, however recently it was tried, unless the entry waits for
@@ -258,20 +264,6 @@ fn beat(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) {
     }
 }
 
-/// Gives `sink` what is due, like [`round`], and logs how the sink is.
-fn logged_round(
-    store: &SharedStore,
-    sink: &mut dyn Sink,
-    standing: &mut Standing,
-) -> Result<Round, StoreError> {
-    let due = folder(store).due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)?;
-    let round = given(store, sink, due, |name, entry, why| standing.refused(name, entry, why))?;
-    if round.sent + round.failed > 0 && !round.is_away {
-        standing.there(sink.name(), round.sent, || left(store, sink));
-    }
-    Ok(round)
-}
-
 /// How long to wait after a round; `vain` counts the rounds before it for which the sink was away.
 fn wait_after(round: Round, vain: &mut u32) -> Duration {
     if round.is_away {
@@ -293,7 +285,7 @@ fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
             beaten = Some(Instant::now());
             beat(store, &mut *sink, &mut standing);
         }
-        let round = logged_round(store, &mut *sink, &mut standing).unwrap_or_else(|error| {
+        let round = round(store, &mut *sink, &mut standing).unwrap_or_else(|error| {
             tracing::error!("what is to be sent on stays here: {}", Said::of(&error));
             Round { is_away: true, ..Round::default() }
         });

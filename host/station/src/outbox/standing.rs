@@ -8,7 +8,7 @@ use crate::store::{Entry, Kind, SINK_OF_PLANT, StoreError};
 
 /// The state of a sink, as far as the log has reported it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Standing {
+pub struct Standing {
     /// It was away.
     is_away: bool,
     /// It did not take something for a time.

@@ -198,17 +198,6 @@ impl Plant {
             .map(drop)
     }
 
-    /// The run of a job that counts; none if there is none yet.
-    ///
-    /// # Errors
-    /// Like [`Self::add_jobs`].
-    pub fn run_of_job(&mut self, id: &str) -> Result<Option<String>, StoreError> {
-        let run = self.carry_out("to tell a job's run", |database| {
-            database.first(sql::RUN_OF_JOB, values![id], |row| row.get::<Option<String>>(0))
-        })?;
-        Ok(run.flatten())
-    }
-
     /// Whether a run counts; none if it is not there.
     ///
     /// # Errors

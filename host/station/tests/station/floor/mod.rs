@@ -55,8 +55,14 @@ fn shown(verdict: Verdict) -> Shown {
     Shown { run, serial, verdict, record_sha256, headline, remedy, finding, saved_ms: 0, board_kind }
 }
 
+/// A board comes or goes, and nothing else is seen at that look; returns what is to be done in its lane.
+fn look(floor: &mut Floor, lane: usize, is_present: bool, now: Duration) -> Option<Effect> {
+    let effects = floor.looked(&[(lane, is_present)], now);
+    effects.into_iter().find_map(|(of, effect)| effect.filter(|_| of == lane))
+}
+
 fn plug(floor: &mut Floor, lane: usize) -> Option<Effect> {
-    floor.happened(lane, Event::Present(true), at(0))
+    look(floor, lane, true, at(0))
 }
 
 #[test]
@@ -71,11 +77,11 @@ fn a_run_goes_from_the_scan_to_a_verdict_that_stays() {
     assert_eq!((accepted.plan, accepted.product.as_str(), accepted.serial), (0, "CAM-A", serial(0)));
     assert_eq!(words(&floor), [Word::Running]);
     assert!(floor.scan(&serial(1), WEBER, at(0)).unwrap_err().to_string().contains("is testing"), "busy");
-    floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
+    floor.happened(0, Event::Begun { run: "r".to_owned() });
     assert_eq!(floor.lanes()[0].run(), Some("r"));
-    floor.happened(0, Event::Saving, at(0));
+    floor.happened(0, Event::Saving);
     assert_eq!(words(&floor), [Word::Saving]);
-    let hooks = floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(0));
+    let hooks = floor.happened(0, Event::Ended(shown(Verdict::Pass)));
     assert_eq!(hooks, Some(Effect::Hooks(shown(Verdict::Pass))));
     floor.scan(&serial(1), WEBER, at(0)).unwrap();
     assert_eq!(
@@ -93,7 +99,7 @@ fn every_verdict_has_its_word() {
         let mut floor = floor(&[SCAN], false);
         plug(&mut floor, 0);
         floor.scan(&serial(0), WEBER, at(0)).unwrap();
-        floor.happened(0, Event::Ended(shown(verdict)), at(0));
+        floor.happened(0, Event::Ended(shown(verdict)));
         assert_eq!(words(&floor), [word]);
     }
 }
@@ -104,17 +110,17 @@ fn what_is_not_saved_blocks_its_lane_until_it_is_known() {
     plug(&mut floor, 0);
     floor.scan("HR:LANE:1", WEBER, at(0)).unwrap();
     floor.scan(&serial(0), WEBER, at(0)).unwrap();
-    floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
-    floor.happened(0, Event::Saving, at(0));
+    floor.happened(0, Event::Begun { run: "r".to_owned() });
+    floor.happened(0, Event::Saving);
     let full = || Event::Unsaved { why: Said::of(&std::io::Error::other("full")) };
     let recover = Some(Effect::Recover { run: "r".to_owned() });
-    assert_eq!(floor.happened(0, full(), at(0)), recover);
+    assert_eq!(floor.happened(0, full()), recover);
     assert_eq!((words(&floor)[0], floor.lanes()[0].shown()), (Word::Unsaved, None));
     floor.scan("HR:LANE:1", WEBER, at(0)).unwrap();
     assert!(floor.scan(&serial(1), WEBER, at(0)).unwrap_err().to_string().contains("is not saved"));
     assert!(floor.scan("HR:OUT", WEBER, at(0)).is_err());
-    assert_eq!(floor.happened(0, full(), at(0)), recover, "it is tried again");
-    floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
+    assert_eq!(floor.happened(0, full()), recover, "it is tried again");
+    floor.happened(0, Event::Ended(shown(Verdict::Error)));
     assert_eq!(words(&floor)[0], Word::Error);
 }
 
@@ -123,8 +129,8 @@ fn a_lane_whose_process_cannot_be_killed_is_out() {
     let mut floor = floor(&[SCAN], false);
     plug(&mut floor, 0);
     floor.scan(&serial(0), WEBER, at(0)).unwrap();
-    floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
-    floor.happened(0, Event::Stuck, at(0));
+    floor.happened(0, Event::Ended(shown(Verdict::Error)));
+    floor.happened(0, Event::Stuck);
     assert_eq!(words(&floor), [Word::Out]);
     assert!(floor.scan(&serial(1), WEBER, at(0)).unwrap_err().to_string().contains("restart the computer"));
     floor.scan("HR:IN", WEBER, at(0)).unwrap();
@@ -140,20 +146,20 @@ fn a_lane_whose_process_cannot_be_killed_is_out_whatever_comes_of_its_result() {
         let mut floor = floor(&[SCAN], false);
         plug(&mut floor, 0);
         floor.scan(&serial(0), WEBER, at(0)).unwrap();
-        floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
-        floor.happened(0, Event::Stuck, at(0));
+        floor.happened(0, Event::Begun { run: "r".to_owned() });
+        floor.happened(0, Event::Stuck);
         assert_eq!(words(&floor), [Word::Running], "until it is settled");
-        floor.happened(0, Event::Saving, at(0));
+        floor.happened(0, Event::Saving);
         for event in before {
-            floor.happened(0, event.clone(), at(0));
+            floor.happened(0, event.clone());
             assert_eq!(words(&floor), [Word::Unsaved]);
         }
-        let hooks = floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
+        let hooks = floor.happened(0, Event::Ended(shown(Verdict::Error)));
         assert_eq!(hooks, Some(Effect::Hooks(shown(Verdict::Error))));
         assert_eq!(words(&floor), [Word::Out], "{before:?}");
         floor.scan("HR:IN", WEBER, at(0)).unwrap();
         floor.scan(&serial(1), WEBER, at(0)).unwrap();
-        floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(0));
+        floor.happened(0, Event::Ended(shown(Verdict::Pass)));
         assert_eq!(words(&floor), [Word::Pass], "whoever put it back has seen to it");
     }
 }
@@ -169,7 +175,7 @@ fn a_lane_starts_as_its_settings_say() {
     let mut gone = floor(&[BUTTON], false);
     plug(&mut gone, 0);
     gone.scan(&serial(0), WEBER, at(0)).unwrap();
-    gone.happened(0, Event::Present(false), at(0));
+    look(&mut gone, 0, false, at(0));
     assert_eq!(words(&gone), [Word::Empty], "the number goes with its board");
     let mut plugged = floor(&[PLUG], false);
     assert_eq!(plugged.scan(&serial(0), WEBER, at(0)).unwrap().effect, None);
@@ -267,11 +273,11 @@ fn what_waits_is_forgotten_when_its_lane_owes_a_check() {
     assert_eq!(floor.lanes()[0].can(), [Act::Start, Act::Abort, Act::Out]);
     let owes =
         Owes { plan: 0, serial: Some(serial(1)), why: Said::of(&std::io::Error::other("the shift is over")) };
-    floor.happened(0, Event::Owes(Some(owes)), at(1));
+    floor.happened(0, Event::Owes(Some(owes)));
     assert_eq!(words(&floor), [Word::Out]);
     assert_eq!(floor.lanes()[0].can(), [Act::Out], "it is in service already, and nothing waits");
     assert!(floor.act(0, Act::Start, WEBER).is_err());
-    assert_eq!(floor.happened(0, Event::Present(true), at(1)), None);
+    assert_eq!(look(&mut floor, 0, true, at(1)), None);
     floor.scan(&serial(1), WEBER, at(2)).unwrap();
     assert_eq!(words(&floor), [Word::Waiting], "what is owed may wait");
     let begun = floor.act(0, Act::Start, WEBER).unwrap().effect;
@@ -294,7 +300,7 @@ fn a_verdict_stays_though_its_lane_owes_a_check() {
             let mut floor = floor(&[SCAN], false);
             plug(&mut floor, 0);
             floor.scan(&serial(0), WEBER, at(0)).unwrap();
-            events.into_iter().for_each(|event| drop(floor.happened(0, event, at(1))));
+            events.into_iter().for_each(|event| drop(floor.happened(0, event)));
             assert_eq!((words(&floor)[0], floor.lanes()[0].note()), (word, Some(&why)), "{when}");
             let refused = floor.scan(&serial(2), WEBER, at(2)).unwrap_err().to_string();
             assert!(refused.contains("the shift is over"), "{refused}");
@@ -316,7 +322,7 @@ fn the_mock_is_judged_where_it_is_owed_without_a_board_and_nowhere_else() {
         let serial = Some(format!("HR:MOCK:{}", lane + 1));
         let owes =
             Owes { plan: 1, serial: serial.clone(), why: Said::of(&std::io::Error::other("the mock first")) };
-        floor.happened(lane, Event::Owes(Some(owes)), at(0));
+        floor.happened(lane, Event::Owes(Some(owes)));
         let begun = floor.scan_for(lane, "HR:MOCK", WEBER, at(0)).unwrap().effect;
         let Some(Effect::Begin(of)) = begun else { panic!("{begun:?}") };
         assert_eq!((of.plan, of.product.as_str(), Some(of.serial)), (1, "CAM-B", serial));

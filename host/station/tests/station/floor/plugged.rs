@@ -4,7 +4,7 @@ use halfrow::Verdict;
 use halfrow_station::floor::{Act, Effect, Event, Floor, Owes, Place, Shown, Word};
 use halfrow_station::said::Said;
 
-use super::{PLUG, SCAN, WEBER, at, floor, plug, rule, serial, shown, words};
+use super::{PLUG, SCAN, WEBER, at, floor, look, plug, rule, serial, shown, words};
 
 /// A lane with a run under way.
 fn running() -> Floor {
@@ -22,7 +22,7 @@ fn told(floor: &Floor) -> (Word, Option<&str>, Option<Verdict>, Option<Verdict>)
 }
 
 fn swap(floor: &mut Floor) {
-    floor.happened(0, Event::Present(false), at(2));
+    look(floor, 0, false, at(2));
     plug(floor, 0);
 }
 
@@ -33,16 +33,16 @@ fn a_verdict_stays_over_an_empty_lane_and_not_over_another_board() {
         [(Verdict::Pass, Word::Pass), (Verdict::Fail, Word::Fail), (Verdict::Error, Word::Error)]
     {
         let mut floor = running();
-        floor.happened(0, Event::Ended(shown(verdict)), at(1));
+        floor.happened(0, Event::Ended(shown(verdict)));
         let its = (word, Some("CA"), Some(verdict), None);
         assert_eq!(told(&floor), its);
         plug(&mut floor, 0);
         assert_eq!(told(&floor), its, "the board was there all the time");
-        floor.happened(0, Event::Present(false), at(2));
+        look(&mut floor, 0, false, at(2));
         assert_eq!(told(&floor), its);
         plug(&mut floor, 0);
         assert_eq!(told(&floor), (Word::Ready, None, None, Some(verdict)));
-        floor.happened(0, Event::Present(false), at(3));
+        look(&mut floor, 0, false, at(3));
         assert_eq!(told(&floor), (Word::Empty, None, None, Some(verdict)), "it does not come back");
         plug(&mut floor, 0);
         floor.scan(&serial(1), WEBER, at(4)).unwrap();
@@ -55,10 +55,10 @@ fn a_verdict_that_comes_when_another_board_is_there_is_not_shown_over_it() {
     let unsaved = || Event::Unsaved { why: Said::of(&std::io::Error::other("full")) };
     for (before, word) in [(vec![Event::Saving], Word::Saving), (vec![unsaved(), unsaved()], Word::Unsaved)] {
         let mut floor = running();
-        before.into_iter().for_each(|event| drop(floor.happened(0, event, at(1))));
+        before.into_iter().for_each(|event| drop(floor.happened(0, event)));
         swap(&mut floor);
         assert_eq!(words(&floor), [word]);
-        let hooks = floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+        let hooks = floor.happened(0, Event::Ended(shown(Verdict::Pass)));
         assert_eq!(hooks, Some(Effect::Hooks(shown(Verdict::Pass))), "it holds for its own board");
         assert_eq!(told(&floor), (Word::Ready, None, None, Some(Verdict::Pass)), "{word:?}");
     }
@@ -70,25 +70,25 @@ fn a_board_that_is_plugged_in_before_a_run_reports_gets_no_verdict_of_it() {
     let mut floor = running();
     swap(&mut floor);
     assert_eq!(floor.lanes()[0].word(), Word::Running);
-    floor.happened(0, Event::Saving, at(3));
-    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+    floor.happened(0, Event::Saving);
+    floor.happened(0, Event::Ended(shown(Verdict::Pass)));
     assert_eq!(told(&floor), (Word::Ready, None, None, Some(Verdict::Pass)));
 }
 
 #[test]
 fn a_board_that_is_plugged_into_a_lane_that_is_out_or_owes_a_check_gets_no_verdict_of_another() {
     let mut out = running();
-    out.happened(0, Event::Ended(shown(Verdict::Pass)), at(1));
+    out.happened(0, Event::Ended(shown(Verdict::Pass)));
     out.act(0, Act::Out, WEBER).unwrap();
     swap(&mut out);
     assert_eq!(told(&out), (Word::Out, None, None, Some(Verdict::Pass)));
     out.act(0, Act::In, WEBER).unwrap();
     assert_eq!(told(&out), (Word::Ready, None, None, Some(Verdict::Pass)));
     let mut owes = running();
-    owes.happened(0, Event::Ended(shown(Verdict::Pass)), at(1));
+    owes.happened(0, Event::Ended(shown(Verdict::Pass)));
     let why = Said::of(&std::io::Error::other("the shift is over"));
     let owed = Owes { plan: 0, serial: Some(serial(1)), why: why.clone() };
-    owes.happened(0, Event::Owes(Some(owed)), at(1));
+    owes.happened(0, Event::Owes(Some(owed)));
     swap(&mut owes);
     assert_eq!(told(&owes), (Word::Out, None, None, Some(Verdict::Pass)));
     assert_eq!(owes.lanes()[0].note(), Some(&why));
@@ -101,7 +101,7 @@ fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
     floor.scan(&serial(0), WEBER, at(10)).unwrap();
     let instead = floor.scan(&serial(1), WEBER, at(20)).unwrap();
     assert!(instead.said.to_string().ends_with(&format!("instead of {}", serial(0))), "{instead:?}");
-    assert_eq!(floor.happened(1, Event::Present(true), at(80)), None, "another one may have come with it");
+    assert_eq!(look(&mut floor, 1, true, at(80)), None, "another one may have come with it");
     let begun = floor.looked(&[], at(81));
     assert!(
         matches!(&begun[..], [(1, Some(Effect::Begin(accepted)))] if accepted.serial == serial(1)),
@@ -119,12 +119,12 @@ fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
     floor.scan("HR:LANE:1", WEBER, at(1)).unwrap();
     assert_eq!(floor.scan(&serial(1), WEBER, at(2)).unwrap().lane, Some(0));
     assert_eq!(floor.pending(at(2)), Some(serial(0).as_str()), "another one waits still");
-    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+    floor.happened(0, Event::Ended(shown(Verdict::Pass)));
     floor.scan("HR:LANE:1", WEBER, at(4)).unwrap();
     assert_eq!(floor.scan(&serial(0), WEBER, at(5)).unwrap().lane, Some(0));
     assert_eq!(floor.pending(at(5)), None);
-    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(6));
-    assert_eq!(floor.happened(1, Event::Present(true), at(7)), None);
+    floor.happened(0, Event::Ended(shown(Verdict::Pass)));
+    assert_eq!(look(&mut floor, 1, true, at(7)), None);
     assert_eq!(floor.looked(&[], at(8)), []);
     assert_eq!(words(&floor), [Word::Pass, Word::Ready]);
 }
@@ -145,7 +145,7 @@ fn a_number_goes_to_none_of_the_boards_that_come_together() {
             let note = lane.note().map(ToString::to_string).unwrap_or_default();
             assert!(note.contains(&serial(0)) && note.contains("boards came into the lanes 1, 2"), "{note}");
         }
-        assert_eq!(floor.happened(2, Event::Present(true), at(2)), None);
+        assert_eq!(look(&mut floor, 2, true, at(2)), None);
         assert_eq!(floor.looked(&[], at(3)), [], "it waits no more");
         assert!(floor.scan_for(1, &serial(0), WEBER, at(3)).unwrap().effect.is_some());
     }
@@ -177,12 +177,12 @@ fn the_verdict_on_the_mock_is_shown_over_no_board_and_lights_no_lamp() {
     for verdict in [Verdict::Pass, Verdict::Fail] {
         let mut floor = running();
         let mock = Shown { serial: "HR:MOCK:1".to_owned(), ..shown(verdict) };
-        assert_eq!(floor.happened(0, Event::Ended(mock), at(1)), None, "no hook");
+        assert_eq!(floor.happened(0, Event::Ended(mock)), None, "no hook");
         assert_eq!(told(&floor), (Word::Ready, None, None, Some(verdict)));
     }
     let mut floor = running();
     let mock = Shown { serial: "HR:MOCK:1".to_owned(), ..shown(Verdict::Error) };
-    assert_eq!(floor.happened(0, Event::Ended(mock.clone()), at(1)), Some(Effect::Hooks(mock)));
+    assert_eq!(floor.happened(0, Event::Ended(mock.clone())), Some(Effect::Hooks(mock)));
     assert_eq!(floor.lanes()[0].word(), Word::Error, "whose reason people are to see");
 }
 
@@ -191,7 +191,7 @@ fn a_number_waits_a_minute_for_its_board() {
     for (seconds, word) in [(60, Word::Running), (61, Word::Ready)] {
         let mut floor = floor(&[SCAN, SCAN], true);
         floor.scan(&serial(0), WEBER, at(0)).unwrap();
-        floor.happened(0, Event::Present(true), at(seconds));
+        look(&mut floor, 0, true, at(seconds));
         floor.looked(&[], at(seconds + 1));
         assert_eq!(words(&floor)[0], word);
     }
@@ -212,12 +212,12 @@ fn taking_nothing() -> [(&'static str, Floor); 5] {
     let [mut out, mut owes, mut running] = [(); 3].map(|()| floor(&[SCAN, SCAN], true));
     out.act(0, Act::Out, WEBER).unwrap();
     let why = Said::of(&std::io::Error::other("the shift is over"));
-    owes.happened(0, Event::Owes(Some(Owes { plan: 0, serial: Some(serial(1)), why: why.clone() })), at(0));
+    owes.happened(0, Event::Owes(Some(Owes { plan: 0, serial: Some(serial(1)), why: why.clone() })));
     plug(&mut running, 0);
     running.scan_for(0, &serial(1), WEBER, at(0)).unwrap();
-    running.happened(0, Event::Present(false), at(0));
+    look(&mut running, 0, false, at(0));
     let mut unsaved = running.clone();
-    unsaved.happened(0, Event::Unsaved { why }, at(0));
+    unsaved.happened(0, Event::Unsaved { why });
     let place = |name: &str, plans| Place { name: name.to_owned(), starts: SCAN, plans };
     let places = vec![place("1", vec![1]), place("2", vec![0, 1])];
     let other = Floor::new(places, vec![rule("CAM-A", "CA"), rule("CAM-B", "CB")], true);
@@ -235,16 +235,16 @@ fn taking_nothing() -> [(&'static str, Floor); 5] {
 fn a_number_whose_board_came_to_a_lane_that_does_not_take_it_waits_for_no_other() {
     for (why, mut floor) in taking_nothing() {
         floor.scan(&serial(0), WEBER, at(1)).unwrap();
-        assert_eq!(floor.happened(0, Event::Present(true), at(2)), None, "{why}");
+        assert_eq!(look(&mut floor, 0, true, at(2)), None, "{why}");
         assert_eq!(floor.looked(&[], at(2)), [], "{why}");
         let noted = |floor: &Floor| floor.lanes()[0].note().map(ToString::to_string).unwrap_or_default();
         let note = noted(&floor);
         assert!(note.contains(&serial(0)) && note.contains(why), "{why}: {note}");
         assert_eq!(floor.pending(at(2)), None, "{why}");
-        assert_eq!(floor.happened(1, Event::Present(true), at(3)), None, "{why}");
+        assert_eq!(look(&mut floor, 1, true, at(3)), None, "{why}");
         assert_eq!(floor.looked(&[], at(3)), [], "{why}");
         assert_eq!(words(&floor)[1], Word::Ready, "{why}");
-        floor.happened(0, Event::Present(false), at(4));
+        look(&mut floor, 0, false, at(4));
         assert!(!noted(&floor).contains(&serial(0)), "{why}: it goes with its board");
     }
 }
@@ -257,23 +257,23 @@ fn a_number_that_was_not_given_does_not_hide_why_its_lane_is_out_or_saved_nothin
     let [_, (_, mut owes), (_, mut running), ..] = taking_nothing();
     for floor in [&mut owes, &mut running] {
         floor.scan(&serial(0), WEBER, at(1)).unwrap();
-        floor.happened(0, Event::Present(true), at(2));
+        look(floor, 0, true, at(2));
         floor.looked(&[], at(2));
         assert!(noted(floor).contains(&serial(0)), "{}", noted(floor));
     }
     owes.act(0, Act::Out, WEBER).unwrap();
     assert_eq!((words(&owes)[0], noted(&owes).as_str()), (Word::Out, "disabled by an operator"));
     let mut ended = running.clone();
-    ended.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+    ended.happened(0, Event::Ended(shown(Verdict::Pass)));
     assert!(noted(&ended).contains(&serial(0)), "{}", noted(&ended));
-    running.happened(0, full(), at(3));
+    running.happened(0, full());
     assert_eq!((words(&running)[0], noted(&running).as_str()), (Word::Unsaved, "the disk is full"));
     // The next board comes while it is tried again to save the result.
-    running.happened(0, Event::Present(false), at(4));
+    look(&mut running, 0, false, at(4));
     running.scan(&serial(2), WEBER, at(5)).unwrap();
-    running.happened(0, Event::Present(true), at(6));
+    look(&mut running, 0, true, at(6));
     running.looked(&[], at(6));
-    running.happened(0, full(), at(7));
+    running.happened(0, full());
     assert!(noted(&running).contains(&serial(2)), "{}", noted(&running));
 }
 
@@ -284,9 +284,9 @@ fn why_a_run_was_not_begun_is_kept_beside_what_its_lane_owes_until_the_next_scan
     plug(&mut floor, 0);
     let said = |text: &str| Said::of(&std::io::Error::other(text.to_owned()));
     let owes = Owes { plan: 0, serial: Some(serial(0)), why: said("the good unit first") };
-    floor.happened(0, Event::Owes(Some(owes)), at(0));
+    floor.happened(0, Event::Owes(Some(owes)));
     floor.scan(&serial(0), WEBER, at(1)).unwrap();
-    floor.happened(0, Event::NotBegun { why: said("the disk is full") }, at(2));
+    floor.happened(0, Event::NotBegun { why: said("the disk is full") });
     let told = |floor: &Floor| {
         let lane = &floor.lanes()[0];
         [lane.note(), lane.refused()].map(|said| said.map(ToString::to_string).unwrap_or_default())
@@ -296,10 +296,10 @@ fn why_a_run_was_not_begun_is_kept_beside_what_its_lane_owes_until_the_next_scan
         (Word::Out, ["the good unit first", "the disk is full"].map(str::to_owned))
     );
     floor.scan(&serial(0), WEBER, at(3)).unwrap();
-    floor.happened(0, Event::Ended(shown(Verdict::Error)), at(4));
+    floor.happened(0, Event::Ended(shown(Verdict::Error)));
     assert_eq!(told(&floor)[1], "");
-    floor.happened(0, Event::Owes(None), at(5));
+    floor.happened(0, Event::Owes(None));
     floor.scan(&serial(1), WEBER, at(6)).unwrap();
-    floor.happened(0, Event::NotBegun { why: said("the disk is full") }, at(7));
+    floor.happened(0, Event::NotBegun { why: said("the disk is full") });
     assert_eq!(told(&floor), ["the disk is full", ""], "once and not twice");
 }

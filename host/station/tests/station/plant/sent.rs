@@ -1,6 +1,6 @@
 //! What arrives at the plant is what the station has.
 
-use halfrow_station::outbox::{PlantSink, Round, round};
+use halfrow_station::outbox::{PlantSink, Round, Standing, round};
 use halfrow_station::store::{Introduction, PlantAddress, SINK_OF_PLANT, SharedStore, Store};
 
 use super::server::Server;
@@ -21,7 +21,7 @@ pub(crate) fn send_as(name: &str, made: Made, address: PlantAddress) -> (Made, R
     let store = SharedStore::new(store);
     let mut all = Round::default();
     loop {
-        let Round { sent, failed, is_away } = round(&store, &mut sink).unwrap();
+        let Round { sent, failed, is_away } = round(&store, &mut sink, &mut Standing::default()).unwrap();
         all = Round { sent: all.sent + sent, failed: all.failed + failed, is_away };
         if is_away || sent == 0 {
             break;

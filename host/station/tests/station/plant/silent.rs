@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
-use halfrow_station::outbox::round;
+use halfrow_station::outbox::{Standing, round};
 use halfrow_station::store::{PlantAddress, SINK_OF_PLANT, SharedStore};
 
 use super::sent::sink;
@@ -77,18 +77,18 @@ fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
     let mut sink = sink("station 7", &mut made.store, address);
     let (_folder, store) = made.parts();
     let store = SharedStore::new(store);
-    assert_eq!(round(&store, &mut sink).unwrap().sent, 1);
+    assert_eq!(round(&store, &mut sink, &mut Standing::default()).unwrap().sent, 1);
     // Over a connection that exists, and over a new one.
     way.is_silent(true);
     for _ in 0..2 {
         assert_eq!(due(), 1);
-        let vain = round(&store, &mut sink).unwrap();
+        let vain = round(&store, &mut sink, &mut Standing::default()).unwrap();
         assert_eq!((vain.sent, vain.failed, vain.is_away), (0, 1, true));
         let said: String = database.query_row("SELECT max(said) FROM outbox", [], |row| row.get(0)).unwrap();
         assert!(said.contains("has said nothing for 20 s"), "{said}");
     }
     way.is_silent(false);
     assert_eq!(due(), 1);
-    assert_eq!(round(&store, &mut sink).unwrap().sent, 1);
+    assert_eq!(round(&store, &mut sink, &mut Standing::default()).unwrap().sent, 1);
     assert_eq!(server.rows("SELECT count(*) FROM run"), [["2"]]);
 }

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use halfrow_station::outbox::{Round, Sink, Undelivered, round};
+use halfrow_station::outbox::{Round, Sink, Standing, Undelivered, round};
 use halfrow_station::said::Saying;
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{Folder, Parcel, SharedStore, Snapshot, Store, Tried};
@@ -163,7 +163,10 @@ fn what_a_sink_has_is_known_before_it_has_all_that_comes_after_it() {
         store.note("weber", "scan", "1", number).unwrap();
     }
     let (store, mut sink) = (SharedStore::new(store), Looking { folder, unsent: Vec::new() });
-    assert_eq!(round(&store, &mut sink).unwrap(), Round { sent: 3, failed: 0, is_away: false });
+    assert_eq!(
+        round(&store, &mut sink, &mut Standing::default()).unwrap(),
+        Round { sent: 3, failed: 0, is_away: false }
+    );
     assert_eq!(sink.unsent[..2], [3, 2]);
     assert!(Snapshot::take(&sink.folder).unwrap().unsent().unwrap().is_empty());
 }
@@ -183,7 +186,7 @@ fn what_waits_for_a_time_of_a_wrong_clock_is_sent_all_the_same() {
         let shared = SharedStore::new(store);
         let mut sink = Looking { folder: folder.clone(), unsent: Vec::new() };
         // What was noted before, and waits for less time, is not sent.
-        assert_eq!(round(&shared, &mut sink).unwrap().sent, sent, "{wait_ms}");
+        assert_eq!(round(&shared, &mut sink, &mut Standing::default()).unwrap().sent, sent, "{wait_ms}");
         drop(shared);
         store = Store::open(&folder).unwrap();
         store.sends_to(vec!["mes".to_owned()]).unwrap();
