@@ -12,7 +12,7 @@ use rusqlite::config::DbConfig;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::database::Sqlite;
-use super::{Database, DatabaseError, PATIENCE, StoreError};
+use super::{Database, DatabaseError, PATIENCE, StoreError, Stored};
 use crate::record::Blobs;
 
 /// How long to wait for a program that is just ending to leave the folder, and the time between two tries.
@@ -31,6 +31,12 @@ impl Folder {
     #[must_use]
     pub fn new(path: &Path) -> Self {
         Self(path.to_owned())
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0
     }
 
     /// The database.
@@ -152,6 +158,24 @@ impl Folder {
             }
         }
         Ok(Box::new(Sqlite::new(reader)))
+    }
+
+    /// What `read` finds by a connection of its own.
+    pub(super) fn read<T>(
+        &self,
+        doing: &'static str,
+        read: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
+    ) -> Result<T, StoreError> {
+        let path = self.database();
+        read(&mut *self.reader()?).map_err(|source| StoreError::of_file(&path, doing, source))
+    }
+
+    /// The verdict of a run, as a connection of its own reads it; none if the run is open or not there.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn verdict_of(&self, run: &str) -> Result<Option<Stored>, StoreError> {
+        self.read("to tell a verdict", |from| Stored::of_run(from, run))
     }
 
     /// Opens the database to read it. If it has no log, SQLite makes one, unless it is told that nothing changes the file. Where

@@ -97,9 +97,12 @@ pub struct Stored {
 }
 
 impl Stored {
-    fn of(row: &Found<'_>) -> Result<Self, DatabaseError> {
-        let (verdict, exit_code) = (row.get(0)?, row.get(1)?);
-        Ok(Self { verdict, exit_code, record_sha256: row.get(2)?, nth: row.get(3)? })
+    /// That of a run; none if the run is open or not there.
+    fn of_run(from: &mut dyn Database, run: &str) -> Result<Option<Self>, DatabaseError> {
+        from.first(statements::VERDICT_OF, values![run], |row| {
+            let (verdict, exit_code) = (row.get(0)?, row.get(1)?);
+            Ok(Self { verdict, exit_code, record_sha256: row.get(2)?, nth: row.get(3)? })
+        })
     }
 }
 
@@ -346,26 +349,6 @@ impl Drop for Store {
         if !self.opened.is_unspoilt() {
             self.writer.leave_log(true);
         }
-    }
-}
-
-impl Folder {
-    /// The verdict of a run, as a connection of its own reads it; none if the run is open or not there.
-    ///
-    /// # Errors
-    /// [`StoreError`] when the database cannot be read.
-    pub fn verdict_of(&self, run: &str) -> Result<Option<Stored>, StoreError> {
-        self.read("to tell a verdict", |from| from.first(statements::VERDICT_OF, values![run], Stored::of))
-    }
-
-    /// What `read` finds by a connection of its own.
-    fn read<T>(
-        &self,
-        doing: &'static str,
-        read: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
-    ) -> Result<T, StoreError> {
-        let path = self.database();
-        read(&mut *self.reader()?).map_err(|source| StoreError::of_file(&path, doing, source))
     }
 }
 

@@ -6,19 +6,13 @@ use std::sync::Arc;
 
 use super::audit::Line;
 use super::database::values;
-use super::{Folder, Snapshot, Store, StoreError, Stored, generation, statements as sql};
+use super::{Folder, Snapshot, Store, StoreError, generation, statements as sql};
 use crate::clock;
 use crate::ids;
 use crate::ids::NoRandomness;
 use crate::record::UnnamedRecord;
 
 impl Folder {
-    /// Where it is.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.0
-    }
-
     /// Copies the database as it is at this moment to the new file `to`.
     pub(crate) fn copy_database(&self, to: &Path) -> Result<(), StoreError> {
         let copied = self.reader()?.execute("VACUUM INTO $1", values![&*to.to_string_lossy()]);
@@ -50,12 +44,6 @@ impl Snapshot {
             records.retain(|record| !known.contains(&record.run));
         }
         Ok(records)
-    }
-
-    /// The verdict of a run; none if the run is open or not there.
-    pub(crate) fn verdict_of(&self, run: &str) -> Result<Option<Stored>, StoreError> {
-        let found = self.rows("to tell a verdict", sql::VERDICT_OF, values![run], Stored::of)?;
-        Ok(found.into_iter().next())
     }
 
     /// The evidence that was removed because it was old.

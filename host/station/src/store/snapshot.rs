@@ -10,8 +10,8 @@ use rusqlite::Connection;
 use super::database::{Database, DatabaseError, Engine, Row as Found, Sqlite, Value, values};
 use super::table::{Rows, page};
 use super::{
-    Folder, OpenRun, Plant, Rebinding, StoreError, bindings, folder, generation, migrations, open_run, rows,
-    statements,
+    Folder, OpenRun, Plant, Rebinding, StoreError, Stored, bindings, folder, generation, migrations,
+    open_run, rows, statements,
 };
 use crate::record::{PlanRecord, Record};
 
@@ -82,6 +82,11 @@ impl Snapshot {
         snapshot
             .read("to be read", |reader| reader.batch("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"))?;
         Ok(snapshot)
+    }
+
+    /// The verdict of a run; none if the run is open or not there.
+    pub(crate) fn verdict_of(&self, run: &str) -> Result<Option<Stored>, StoreError> {
+        self.read("to tell a verdict", |from| Stored::of_run(from, run))
     }
 
     /// The connection to the plant, to be used again; none for a station, or when it does not work any more.
