@@ -1,6 +1,7 @@
 //! `halfrow-station history`
 
 use clap::Args;
+use halfrow::Verdict;
 use halfrow_program::number::counted;
 
 use super::Failure;
@@ -35,9 +36,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     either(&page, arguments.json, text)
 }
 
+/// The run's verdict, or that it is open.
+pub(super) fn verdict(run: &RunLine) -> String {
+    run.verdict.map_or_else(|| "open".to_owned(), |verdict| verdict.to_string())
+}
+
 /// Why the run was no PASS, cut to what fits on a line.
 fn why(run: &RunLine) -> String {
-    let headline = run.headline.as_deref().filter(|_| run.verdict.as_deref() != Some("PASS"));
+    let headline = run.headline.as_deref().filter(|_| run.verdict != Some(Verdict::Pass));
     let headline = headline.unwrap_or_default();
     match headline.char_indices().nth(MOST_RESULT) {
         Some((end, _)) => format!("{}…", &headline[..end]),
@@ -47,12 +53,11 @@ fn why(run: &RunLine) -> String {
 
 fn text(page: &Page) -> String {
     let rows = page.runs.iter().map(|run| {
-        let verdict = run.verdict.clone().unwrap_or_else(|| "open".to_owned());
         let waived = if run.waived { ", waived" } else { "" };
         vec![
             time(run.started_ms),
             run.serial.clone(),
-            format!("{verdict}{waived}"),
+            format!("{}{waived}", verdict(run)),
             format!("{} {}", run.plan, run.version),
             run.lane.clone(),
             run.operator.clone(),

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use halfrow_program::number::counted;
 
 use super::beginning::SettingsFile;
@@ -13,7 +13,7 @@ use super::{Failure, print};
 use crate::exit::Exit;
 use crate::plan::Plan;
 use crate::settings::is_word;
-use crate::store::{Job, NewJob, PlantAddress, PlantPool, STATES, Wanted, jobs};
+use crate::store::{Job, JobState, NewJob, PlantAddress, PlantPool, Wanted, jobs};
 
 /// How many jobs are listed unless the command says otherwise.
 const LISTED: u32 = 100;
@@ -37,7 +37,7 @@ enum Action {
     List {
         /// Those of one state [default: waiting, claimed and dead]
         #[arg(long, value_enum)]
-        state: Option<State>,
+        state: Option<JobState>,
         /// How many at most
         #[arg(long, default_value_t = LISTED)]
         most: u32,
@@ -84,25 +84,6 @@ struct Change {
     why: Why,
 }
 
-/// How it stands with a job.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum State {
-    /// No station has it
-    Waiting,
-    /// A station has it
-    Claimed,
-    /// It was judged
-    Done,
-    /// It came to nothing, and waits for a person
-    Dead,
-}
-
-impl State {
-    const fn name(self) -> &'static str {
-        STATES[self as usize]
-    }
-}
-
 /// There is no such job, or its state does not allow this.
 #[derive(Debug, thiserror::Error)]
 #[error("there is no job {id} that could be {done}; `halfrow-station job list` shows the state of each")]
@@ -125,8 +106,8 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         Action::Add(add) => add_jobs(&address, add),
         Action::List { state, most, json } => {
             let states = match state {
-                Some(state) => vec![state.name()],
-                None => STATES.into_iter().filter(|state| *state != State::Done.name()).collect(),
+                Some(state) => vec![*state],
+                None => JobState::ALL.into_iter().filter(|state| *state != JobState::Done).collect(),
             };
             let found = PlantPool::new(address).look(|now| jobs(now, &states, "", *most))?;
             either(&found, *json, |found| text(found))
@@ -182,9 +163,9 @@ fn text(jobs: &[Job]) -> String {
     let row = |job: &Job| {
         let about = if job.serial.is_empty() { format!("any {}", job.kind) } else { job.serial.clone() };
         let state = match (&job.verdict, &job.holder) {
-            (Some(verdict), _) => verdict.clone(),
-            (None, Some(holder)) if job.state == State::Claimed.name() => format!("claimed by {holder}"),
-            _ => job.state.clone(),
+            (Some(verdict), _) => verdict.to_string(),
+            (None, Some(holder)) if job.state == JobState::Claimed => format!("claimed by {holder}"),
+            _ => job.state.as_str().to_owned(),
         };
         let plan = format!("{} {}", job.plan, job.version);
         let (tries, priority) = (job.attempts.to_string(), job.priority.to_string());

@@ -1,9 +1,11 @@
 //! `halfrow-station unit`
 
 use clap::Args;
+use halfrow::Verdict;
 use halfrow::words::plain;
 
 use super::Failure;
+use super::history::verdict;
 use super::looking::{Results, either, time};
 use crate::exit::Exit;
 use crate::export;
@@ -11,9 +13,6 @@ use crate::history::mismatch::{Bound, Mismatch};
 use crate::history::unit::{Unit, UnitRun, units};
 use crate::record::in_one_line;
 use crate::store::Snapshot;
-
-/// The verdict of runs whose record says what they did not test.
-const PASS: &str = "PASS";
 
 /// Show all that is known of the units of a serial number
 #[derive(Debug, Args)]
@@ -72,7 +71,7 @@ fn mismatch(one: &Mismatch) -> String {
 /// What a PASS did not test, a line for each step; nothing where its record is not here.
 fn not_exercised(run: &UnitRun, of: &Snapshot) -> Vec<String> {
     let line = &run.line;
-    let hash = line.record_sha256.as_ref().filter(|_| line.verdict.as_deref() == Some(PASS));
+    let hash = line.record_sha256.as_ref().filter(|_| line.verdict == Some(Verdict::Pass));
     let record = hash.and_then(|hash| export::record(of, hash).ok());
     let parts = record.as_ref().map(|(record, _)| record.not_exercised()).unwrap_or_default();
     parts.iter().map(in_one_line).collect()
@@ -80,7 +79,7 @@ fn not_exercised(run: &UnitRun, of: &Snapshot) -> Vec<String> {
 
 fn run_lines(run: &UnitRun, not_exercised: &[String]) -> Vec<String> {
     let line = &run.line;
-    let verdict = line.verdict.as_deref().unwrap_or("open");
+    let verdict = verdict(line);
     let headline = line.headline.as_deref().unwrap_or("it is under way");
     let device = run.device.as_deref().unwrap_or("not known");
     let mut lines = vec![

@@ -91,8 +91,8 @@ pub struct RunLine {
     pub lane: String,
     /// Who started it.
     pub operator: String,
-    /// `PASS`, `FAIL` or `ERROR`.
-    pub verdict: Option<String>,
+    /// The verdict.
+    pub verdict: Option<Verdict>,
     /// Who or what is the cause of it.
     pub cause: Option<String>,
     /// The result in one sentence.
@@ -130,7 +130,7 @@ impl RunLine {
 
     /// Whether it is a judgement that counts.
     pub(crate) fn is_judgement(&self) -> bool {
-        self.nth > 0 && matches!(self.verdict.as_deref(), Some("PASS" | "FAIL"))
+        self.nth > 0 && matches!(self.verdict, Some(Verdict::Pass | Verdict::Fail))
     }
 
     fn place(&self) -> Place {

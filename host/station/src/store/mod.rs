@@ -50,10 +50,10 @@ use generation::{Log, Opened};
 pub(crate) use outbox::DEAD_SHOWN;
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub use plant::{
-    Claim, Introduction, Job, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError, PlantLink,
-    SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
+    Claim, Introduction, Job, JobState, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError,
+    PlantLink, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
 };
-pub(crate) use plant::{KeptRun, LEASE_MS, PlantPool, STATES, publications, waiters};
+pub(crate) use plant::{KeptRun, LEASE_MS, PlantPool, publications, waiters};
 pub use retention::Removed;
 pub use retest_policy::AgainError;
 pub use shared_store::SharedStore;

@@ -12,7 +12,7 @@ use super::routes::{Route, Who, look};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
-use crate::store::{Job, STATES, SharedBoard, Waiting, boards, jobs, waiters};
+use crate::store::{Job, JobState, SharedBoard, Waiting, boards, jobs, waiters};
 
 /// How many jobs a page has.
 const MOST: u32 = 100;
@@ -36,8 +36,8 @@ async fn page(
     visit: Visit,
     Fields(asked): Fields<JobFilter>,
 ) -> Result<Response, Trouble> {
-    let chosen = STATES.into_iter().find(|state| *state == asked.state);
-    let states = chosen.map_or_else(|| STATES.to_vec(), |state| vec![state]);
+    let chosen = JobState::named(&asked.state);
+    let states = chosen.map_or_else(|| JobState::ALL.to_vec(), |state| vec![state]);
     let after = asked.after.clone();
     let found = app
         .look(&visit, move |now| Ok((jobs(now, &states, &after, MOST)?, boards(now)?, waiters(now)?)))
@@ -48,7 +48,7 @@ async fn page(
         (states_to_choose(&visit, chosen))
         @if jobs.is_empty() { p.nothing { (visit.say("jobs.none")) } } @else { (table(&visit, &jobs)) }
         @if let Some(last) = jobs.last().filter(|_| jobs.len() == MOST as usize) {
-            p { a href=(format!("/jobs?state={}&after={}", chosen.unwrap_or_default(), last.id)) { (visit.say("jobs.more")) } }
+            p { a href=(format!("/jobs?state={}&after={}", chosen.map_or("", JobState::as_str), last.id)) { (visit.say("jobs.more")) } }
         }
         h2 { (visit.say("jobs.boards")) }
         @if boards.is_empty() { p.nothing { (visit.say("jobs.no_boards")) } } @else { (shelf(&visit, &boards)) }
@@ -59,13 +59,13 @@ async fn page(
 }
 
 /// A link for each state and one for all.
-fn states_to_choose(visit: &Visit, chosen: Option<&str>) -> Markup {
+fn states_to_choose(visit: &Visit, chosen: Option<JobState>) -> Markup {
     html! {
         p {
             a href="/jobs" aria-current=[chosen.is_none().then_some("true")] { (visit.say("jobs.all")) }
-            @for state in STATES {
+            @for state in JobState::ALL {
                 " · "
-                a href=(format!("/jobs?state={state}")) aria-current=[(chosen == Some(state)).then_some("true")] {
+                a href=(format!("/jobs?state={}", state.as_str())) aria-current=[(chosen == Some(state)).then_some("true")] {
                     (state_word(visit, state))
                 }
             }
@@ -73,12 +73,12 @@ fn states_to_choose(visit: &Visit, chosen: Option<&str>) -> Markup {
     }
 }
 
-fn state_word(visit: &Visit, state: &str) -> &'static str {
+fn state_word(visit: &Visit, state: JobState) -> &'static str {
     match state {
-        "waiting" => visit.say("jobs.waiting"),
-        "claimed" => visit.say("jobs.claimed"),
-        "done" => visit.say("jobs.done"),
-        _ => visit.say("jobs.dead"),
+        JobState::Waiting => visit.say("jobs.waiting"),
+        JobState::Claimed => visit.say("jobs.claimed"),
+        JobState::Done => visit.say("jobs.done"),
+        JobState::Dead => visit.say("jobs.dead"),
     }
 }
 
@@ -108,8 +108,8 @@ fn row(visit: &Visit, job: &Job) -> Markup {
             td.number { (job.priority) }
             td {
                 @match (&job.run, &job.verdict) {
-                    (Some(run), verdict) => { a href=(show::run_address(run)) { (show::verdict(visit, verdict.as_deref())) } }
-                    (None, _) => { (state_word(visit, &job.state)) }
+                    (Some(run), verdict) => { a href=(show::run_address(run)) { (show::verdict(visit, *verdict)) } }
+                    (None, _) => { (state_word(visit, job.state)) }
                 }
                 @if let Some(holder) = &job.holder { div.soft { (show::said(holder)) } }
             }

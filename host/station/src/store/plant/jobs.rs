@@ -1,17 +1,60 @@
 //! Jobs: what any free station is to judge. A job and its board are claimed together or not at all, and held until a time by
 //! the plant's clock. A job is done when a PASS or FAIL of its last claim has come to the plant.
 
+use clap::ValueEnum;
+use halfrow::Verdict;
 use serde::Serialize;
 
-use super::super::database::{Database, DatabaseError, Row, values};
+use super::super::database::{Database, DatabaseError, FromValue, Row, Value, values};
 use super::super::{Snapshot, StoreError, statements as sql};
 use super::boards::{LEASE_MS, Lease, hold};
 use super::{Plant, arrived};
 use crate::plan::Plan;
 use crate::{clock, ids};
 
-/// The states of jobs: waiting for a station, claimed by one, judged, given up.
-pub(crate) const STATES: [&str; 4] = ["waiting", "claimed", "done", "dead"];
+/// How it stands with a job.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum JobState {
+    /// No station has it.
+    Waiting,
+    /// A station has it.
+    Claimed,
+    /// It was judged.
+    Done,
+    /// It came to nothing, and waits for a person.
+    Dead,
+}
+
+impl JobState {
+    /// All of them, in the order in which a job comes to them.
+    pub(crate) const ALL: [Self; 4] = [Self::Waiting, Self::Claimed, Self::Done, Self::Dead];
+
+    /// Its name in tables, documents and addresses.
+    #[must_use]
+    pub(crate) const fn as_str(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Claimed => "claimed",
+            Self::Done => "done",
+            Self::Dead => "dead",
+        }
+    }
+
+    /// The state of this name.
+    #[must_use]
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|state| state.as_str() == name)
+    }
+}
+
+impl FromValue for JobState {
+    const EXPECTED: &'static str = "waiting, claimed, done or dead";
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        if let Value::Text(text) = value { Self::named(text) } else { None }
+    }
+}
 
 /// Which board a job is about.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,8 +99,8 @@ pub struct Job {
     pub needs: String,
     /// Jobs of a higher priority come first.
     pub priority: i64,
-    /// One of [`STATES`].
-    pub state: String,
+    /// How it stands with it.
+    pub state: JobState,
     /// Who has it, or had it last.
     pub holder: Option<String>,
     /// How often it was claimed since it was added, or since a person had it tried again.
@@ -65,7 +108,7 @@ pub struct Job {
     /// The run that counts.
     pub run: Option<String>,
     /// That run's verdict.
-    pub verdict: Option<String>,
+    pub verdict: Option<Verdict>,
     /// When it was added, in milliseconds since 1970, UTC.
     pub created_ms: i64,
     /// Who wants it.
@@ -234,12 +277,13 @@ fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, Data
     })
 }
 
-/// The jobs in these of the [`STATES`], the newest first: at most `most`, following the job with the id `after` unless that is
+/// The jobs in these states, the newest first: at most `most`, following the job with the id `after` unless that is
 /// empty.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
-pub fn jobs(of: &Snapshot, states: &[&str], after: &str, most: u32) -> Result<Vec<Job>, StoreError> {
+pub fn jobs(of: &Snapshot, states: &[JobState], after: &str, most: u32) -> Result<Vec<Job>, StoreError> {
+    let states: Vec<_> = states.iter().map(|state| state.as_str()).collect();
     of.rows("to tell its jobs", sql::JOBS, values![&states.join(" "), after, most], job)
 }
 

@@ -4,6 +4,7 @@ use axum::Form;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse as _, Redirect, Response};
+use halfrow::Verdict;
 use maud::{Markup, html};
 use serde::Deserialize;
 
@@ -109,7 +110,7 @@ pub(super) async fn rebind(
 
 /// The form by which an engineer waives the FAIL of a run that has no waiver.
 pub(super) fn waive_form(visit: &Visit, run: &UnitRun) -> Markup {
-    let is_open = run.line.verdict.as_deref() == Some("FAIL") && run.waivers.is_empty();
+    let is_open = run.line.verdict == Some(Verdict::Fail) && run.waivers.is_empty();
     html! {
         @if is_open && visit.may(Who::Engineer) {
             form.change method="post" action=(format!("{}/waive", show::run_address(&run.line.id))) autocomplete="off" {

@@ -63,8 +63,8 @@ pub(super) async fn shown(
         @if let Some(refused) = &refused { (refused.markup()) }
         (content(&visit, &found))
     };
-    let title =
-        format!("{} {}", found.run.line.serial, found.run.line.verdict.as_deref().unwrap_or_default());
+    let verdict = found.run.line.verdict.map(|verdict| verdict.to_string());
+    let title = format!("{} {}", found.run.line.serial, verdict.unwrap_or_default());
     Ok(Page { here: Here::History, title: &title, head: show::head(), content }.with_status(&visit, status))
 }
 

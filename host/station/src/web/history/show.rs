@@ -1,5 +1,6 @@
 //! How moments, verdicts and shares are shown on every page of the history.
 
+use halfrow::Verdict;
 use halfrow::words::plain;
 use jiff::Timestamp;
 use maud::{Markup, html};
@@ -39,20 +40,22 @@ pub(in crate::web) fn english(visit: &Visit, text: &str) -> Markup {
 }
 
 /// A verdict as word, shape and colour; without one, that the run is open.
-pub(in crate::web) fn verdict(visit: &Visit, verdict: Option<&str>) -> Markup {
-    let (class, shape) = match verdict {
-        Some("PASS") => ("verdict pass", "✔"),
-        Some("FAIL") => ("verdict fail", "✖"),
-        Some("ERROR") => ("verdict error", "⚠"),
-        _ => return html! { span.verdict.open { "▶ " (visit.say("history.open")) } },
+pub(in crate::web) fn verdict(visit: &Visit, verdict: Option<Verdict>) -> Markup {
+    let Some(verdict) = verdict else {
+        return html! { span.verdict.open { "▶ " (visit.say("history.open")) } };
     };
-    html! { span class=(class) { span aria-hidden="true" { (shape) " " } (verdict.unwrap_or_default()) } }
+    let (class, shape) = match verdict {
+        Verdict::Pass => ("verdict pass", "✔"),
+        Verdict::Fail => ("verdict fail", "✖"),
+        Verdict::Error => ("verdict error", "⚠"),
+    };
+    html! { span class=(class) { span aria-hidden="true" { (shape) " " } (verdict) } }
 }
 
 /// The verdict of a run, and that its FAIL is waived.
 pub(super) fn outcome(visit: &Visit, run: &RunLine) -> Markup {
     html! {
-        (verdict(visit, run.verdict.as_deref()))
+        (verdict(visit, run.verdict))
         @if run.waived { " " span.waived { (visit.say("history.waived")) } }
     }
 }

@@ -3,6 +3,7 @@
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
+use halfrow::Verdict;
 use halfrow::words::plain;
 use maud::{Markup, html};
 
@@ -83,11 +84,10 @@ fn flips(visit: &Visit, unit: &Unit) -> Markup {
     let mut plans: Vec<_> = unit.runs.iter().filter(judged).map(|run| run.line.plan.as_str()).collect();
     plans.sort_unstable();
     plans.dedup();
-    let verdict_of = |run: Option<&UnitRun>| run.and_then(|run| run.line.verdict.clone());
+    let verdict_of = |run: Option<&&UnitRun>| run.and_then(|run| run.line.verdict);
     let is_flip = |plan: &&str| {
         let of_plan: Vec<_> = unit.runs.iter().filter(judged).filter(|run| run.line.plan == *plan).collect();
-        verdict_of(of_plan.last().copied()).as_deref() == Some("FAIL")
-            && verdict_of(of_plan.first().copied()).as_deref() == Some("PASS")
+        [of_plan.last(), of_plan.first()].map(verdict_of) == [Some(Verdict::Fail), Some(Verdict::Pass)]
     };
     html! {
         @for plan in plans.into_iter().filter(is_flip) {

@@ -1,5 +1,6 @@
 //! What is counted when a run ends: updated where the database is older, and checked against the records.
 
+use halfrow::Verdict;
 use halfrow_station::check::check;
 use halfrow_station::history::unit::units;
 use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
@@ -29,18 +30,18 @@ fn a_database_is_brought_up_to_date_with_a_copy_beside_it_by_who_writes_alone() 
 #[test]
 fn a_clock_that_is_set_back_puts_no_run_in_front_of_an_earlier_one() {
     let back = Run { started_ms: BEGIN_MS - HOUR_MS, ..Run::of("S1", End::Fail(&["memory"])) };
-    let last = |made: &Made| units(&made.now(), "S1").unwrap()[0].runs[0].line.verdict.clone();
+    let last = |made: &Made| units(&made.now(), "S1").unwrap()[0].runs[0].line.verdict;
     let faults = |made: &Made| check(&made.folder()).unwrap().faults.len();
     let mut by_clock = Made::new();
     by_clock.run(&Run::of("S1", End::Pass));
     by_clock.run(&back);
-    assert!(last(&by_clock).as_deref() == Some("PASS") && faults(&by_clock) > 0);
+    assert!(last(&by_clock) == Some(Verdict::Pass) && faults(&by_clock) > 0);
     let mut made = Made::new();
     let first = made.run(&Run::of("S1", End::Pass));
     let id = made.store.new_id(back.started_ms).unwrap().to_string();
     assert!(id > first, "{id}");
     made.run_as(id, &back);
-    assert_eq!((last(&made).as_deref(), faults(&made)), (Some("FAIL"), 0));
+    assert_eq!((last(&made), faults(&made)), (Some(Verdict::Fail), 0));
     // A login while the clock was ahead is in no order with runs.
     let database = Connection::open(made.folder().database()).unwrap();
     let ahead = super::made::id(BEGIN_MS + 24 * HOUR_MS, 0);

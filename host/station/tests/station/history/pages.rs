@@ -134,6 +134,6 @@ fn a_line_says_what_was_entered() {
         (line.station.as_str(), line.lane.as_str(), line.operator.as_str()),
         ("station 7", "3", "lang")
     );
-    assert_eq!((line.verdict.as_deref(), line.cause.as_deref()), (Some("FAIL"), Some("board")));
+    assert_eq!((line.verdict, line.cause.as_deref()), (Some(Verdict::Fail), Some("board")));
     assert_eq!((line.nth, line.waived), (1, false));
 }
