@@ -85,7 +85,10 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let unsent = now.unsent()?;
             either(&Backlog { dead: now.dead(&unsent)?, unsent }, *json, text)
         }
-        Action::Send { disk } => send(&settings, disk.opens(&settings.data)?),
+        Action::Send { disk } => {
+            disk.takes(&settings.data)?;
+            send(&settings, Store::open_existing(&folder)?)
+        }
         Action::Release { id, sink, why } => release(&folder, id.as_deref(), sink.as_deref(), why),
         Action::Again { sink, why } => again(&settings, &folder, sink, why),
         Action::Forget { sink, why } => forget(&settings, &folder, sink, why),

@@ -41,7 +41,7 @@ fn device(text: &str) -> Result<String, String> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Arguments { data, serial, reason, device, product, operator } = arguments;
-    let mut store = Store::open(&Folder::new(data))?;
+    let mut store = Store::open_existing(&Folder::new(data))?;
     entered(&mut store, operator, &format!("rebind {serial}"))?;
     let change = Change { serial, product: product.as_deref(), device: device.as_deref(), operator, reason };
     let bound = store.rebind(&change)?;

@@ -2,6 +2,7 @@
 
 use std::io::{Read as _, Write as _};
 use std::net::TcpListener;
+use std::path::Path;
 use std::process::Command;
 use std::thread;
 use std::time::Duration;
@@ -12,6 +13,7 @@ use halfrow_station::store::{Admission, Change, RebindError, SharedStore};
 
 use super::bench::{Did, PLAN, Station, program};
 use super::ends::with_link;
+use crate::common::folder;
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 
 /// The mock board whose FPGA has this number.
@@ -20,10 +22,14 @@ pub(super) fn device(number: u64) -> String {
 }
 
 fn rebind(station: &Station, arguments: &[&str]) -> Did {
+    rebind_in(&station.data(), arguments)
+}
+
+fn rebind_in(data: &Path, arguments: &[&str]) -> Did {
     Command::new(program())
         .arg("rebind")
         .arg("--data")
-        .arg(station.data())
+        .arg(data)
         .args(arguments)
         .args(["--operator", "engineer"])
         .env("SUDO_USER", "braun")
@@ -248,12 +254,27 @@ fn an_engineer_binds_anew_with_a_reason_that_is_kept() {
 fn a_run_after_a_change_of_a_binding_has_a_later_id_whatever_the_clock_says() {
     let mut made = Made::new();
     made.run(&Run::of("CAT00017", End::Pass));
-    let change =
-        Change { serial: "CAT00017", product: None, device: None, operator: "engineer", reason: "x" };
+    let change = Change {
+        serial: "CAT00017",
+        product: None,
+        device: None,
+        operator: "engineer",
+        reason: "x",
+    };
     made.store.rebind(&change).unwrap();
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     let changed = database.query_row("SELECT id FROM audit", [], |row| row.get::<_, String>(0)).unwrap();
     assert!(made.store.new_id(BEGIN_MS).unwrap().to_string() > changed);
+}
+
+/// A folder whose name is mistyped, or whose disk is not mounted, would have a station that begins anew.
+#[test]
+fn nothing_is_bound_where_there_is_no_station_and_none_is_made() {
+    let folder = folder();
+    let data = folder.path().join("data");
+    let did = rebind_in(&data, &["--serial", "CAT00017", "--reason", "FPGA exchanged"]);
+    assert!(did.code == Some(3) && did.complained.contains("check that it is there"), "{did:?}");
+    assert!(!data.exists());
 }
 
 #[test]

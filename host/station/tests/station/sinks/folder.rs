@@ -58,6 +58,16 @@ fn each_run_is_a_file_with_the_bytes_that_are_exported_and_a_waiver_is_one_too()
     }
 }
 
+/// A disk that is not mounted would have a station that begins anew.
+#[test]
+fn nothing_is_sent_of_a_station_that_is_not_there_and_none_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let sink = "[[sink]]\nname = \"share\"\nfolder = \"share\"\n";
+    let sent = send(folder.path(), sink);
+    assert!(sent.code == Some(3) && sent.complained.contains("check that it is there"), "{sent:?}");
+    assert_eq!(names(folder.path()), ["plan.toml", "station.toml"]);
+}
+
 /// The service's own files are for nobody else, but what it writes here is for everybody who may read the folder.
 #[test]
 fn whoever_may_read_the_folder_may_read_its_files_and_nobody_else() {
