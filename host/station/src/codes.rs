@@ -26,7 +26,9 @@ use crate::run::RunError;
 use crate::said::Saying;
 use crate::secret::SecretError;
 use crate::settings::PlantSettingsError;
-use crate::store::{AgainError, NoWaiver, PlantAddressError, PlantError, RebindError, StoreError};
+use crate::store::{
+    AgainError, NoWaiver, PlantAddressError, PlantError, ReasonError, RebindError, StoreError,
+};
 use crate::trust::{CertificateError, TrustError};
 use crate::work::{Lost, WorkError};
 
@@ -260,11 +262,13 @@ codes::codes! {
         Missing [table, key] => "table-row-missing",
         Surplus [table, key] => "table-row-surplus",
     }
+    ReasonError {
+        Missing => "reason-missing",
+        TooLong [characters, most] => "reason-too-long",
+    }
     RebindError {
         Unknown [serial] => "unit-unknown",
         Several [serial, first, second] => "unit-of-two-products",
-        NoReason => "rebind-without-reason",
-        TooLong [characters, most] => "rebind-reason-too-long",
         NoDevice [device] => "device-malformed",
         UnderTest [serial] => "unit-under-test",
         = Store,
@@ -273,8 +277,6 @@ codes::codes! {
         NoRun [run] => "waiver-without-run",
         NoFail [run, verdict] => "waiver-without-fail",
         Waived [run] => "waiver-given-already",
-        Empty => "waiver-without-reason",
-        TooLong [characters, most] => "waiver-reason-too-long",
         = NoRandomness,
         = Store,
     }

@@ -203,7 +203,7 @@ impl Desk<'_> {
             sha256: sha256.to_owned(),
             number: self.number(name)?,
             operator: self.why.operator.clone(),
-            reason: self.why.reason.clone(),
+            reason: self.why.reason.to_string(),
             key: self.key.public(),
         };
         let signature = self.key.sign(&statement.text());

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::why::{entered, person, said};
+use super::why::{Why, entered};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::store::{Change, Folder, RebindError, Store, is_device};
@@ -20,18 +20,14 @@ pub(super) struct Arguments {
     /// The board's serial number
     #[arg(long)]
     serial: String,
-    /// Why, in 500 characters at most
-    #[arg(long, value_parser = said)]
-    reason: String,
     /// The number of its FPGA, 16 hexadecimal digits [default: that of the board that is judged next]
     #[arg(long, value_name = "DEVICE", value_parser = device)]
     device: Option<String>,
     /// Its product, where several have such a serial number
     #[arg(long)]
     product: Option<String>,
-    /// Your name, which the audit keeps
-    #[arg(long, value_name = "NAME", value_parser = person)]
-    operator: String,
+    #[command(flatten)]
+    why: Why,
 }
 
 fn device(text: &str) -> Result<String, String> {
@@ -40,7 +36,7 @@ fn device(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let Arguments { data, serial, reason, device, product, operator } = arguments;
+    let Arguments { data, serial, device, product, why: Why { reason, operator } } = arguments;
     let mut store = Store::open_existing(&Folder::new(data))?;
     entered(&mut store, operator, &format!("rebind {serial}"))?;
     let change = Change { serial, product: product.as_deref(), device: device.as_deref(), operator, reason };
@@ -57,11 +53,9 @@ impl From<RebindError> for Failure {
         match error {
             RebindError::Store(error) => error.into(),
             RebindError::UnderTest { .. } => Self::error(error),
-            RebindError::Unknown { .. }
-            | RebindError::Several { .. }
-            | RebindError::NoReason
-            | RebindError::TooLong { .. }
-            | RebindError::NoDevice { .. } => Self::call(error),
+            RebindError::Unknown { .. } | RebindError::Several { .. } | RebindError::NoDevice { .. } => {
+                Self::call(error)
+            }
         }
     }
 }

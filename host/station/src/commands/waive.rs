@@ -5,7 +5,7 @@ use halfrow::words::plain;
 
 use super::Failure;
 use super::looking::Data;
-use super::why::{entered, person};
+use super::why::{Why, entered};
 use crate::console;
 use crate::exit::Exit;
 use crate::store::{NoWaiver, Store};
@@ -20,18 +20,15 @@ pub(super) struct Arguments {
     run: String,
     #[command(flatten)]
     data: Data,
-    /// Why, in 500 characters at most
-    #[arg(long, value_name = "TEXT")]
-    reason: String,
-    /// Your name, which the audit keeps
-    #[arg(long, value_name = "NAME", value_parser = person)]
-    operator: String,
+    #[command(flatten)]
+    why: Why,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut store = Store::open_existing(&arguments.data.folder())?;
-    entered(&mut store, &arguments.operator, &format!("waive {}", arguments.run))?;
-    let waiver = store.waive(&arguments.run, &arguments.operator, &arguments.reason)?;
+pub(super) fn run(Arguments { run, data, why }: &Arguments) -> Result<Exit, Failure> {
+    let Why { reason, operator } = why;
+    let mut store = Store::open_existing(&data.folder())?;
+    entered(&mut store, operator, &format!("waive {run}"))?;
+    let waiver = store.waive(run, operator, reason)?;
     let said = format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason);
     console::tell(&plain(&said));
     Ok(Exit::Pass)

@@ -6,7 +6,7 @@ use clap::Args;
 use halfrow::words::plain;
 use nix::unistd::{Uid, User, getuid};
 
-use crate::store::{Plant, PlantAddress, Store, StoreError};
+use crate::store::{Plant, PlantAddress, Reason, Store, StoreError};
 
 /// What the audit calls a command that somebody gives to do something.
 const ACT: &str = "command";
@@ -14,17 +14,12 @@ const ACT: &str = "command";
 /// Who, and why.
 #[derive(Debug, Args)]
 pub(super) struct Why {
-    /// Why
-    #[arg(long, value_parser = said)]
-    pub(super) reason: String,
+    /// Why, in 500 characters at most
+    #[arg(long, value_parser = Reason::of)]
+    pub(super) reason: Reason,
     /// Your name, which the audit keeps
     #[arg(long, value_name = "NAME", value_parser = person)]
     pub(super) operator: String,
-}
-
-/// A reason, which blanks are not.
-pub(super) fn said(text: &str) -> Result<String, String> {
-    some(text, "say why in a few words")
 }
 
 /// The name of the person who acts. None is taken from the environment: `sudo -u halfrow` sets USER to a service's account.

@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::audit::Line;
 use super::database::{Database, DatabaseError, Row, values};
-use super::waivers::too_long;
-use super::{MOST_REASON, Store, StoreError, statements as sql};
+use super::{Reason, Store, StoreError, statements as sql};
 use crate::clock;
 use crate::record::RunHead;
 use crate::said::{Said, Saying};
@@ -84,14 +83,8 @@ impl Store {
     /// each other; without a device, the next judgement of the unit binds it. The reason is kept.
     ///
     /// # Errors
-    /// [`RebindError`] when there is no such unit, it is being tested, or the device or the reason is not acceptable.
+    /// [`RebindError`] when there is no such unit, it is being tested, or the device is none.
     pub fn rebind(&mut self, change: &Change<'_>) -> Result<Rebinding, RebindError> {
-        if change.reason.trim().is_empty() {
-            return Err(RebindError::NoReason);
-        }
-        if let Some(characters) = too_long(change.reason.trim()) {
-            return Err(RebindError::TooLong { characters, most: MOST_REASON });
-        }
         if let Some(device) = change.device.filter(|device| !is_device(device)) {
             return Err(RebindError::NoDevice { device: device.to_owned() });
         }
@@ -109,7 +102,7 @@ impl Store {
             operator: change.operator.to_owned(),
             unit_id,
             device: change.device.map(str::to_owned),
-            reason: change.reason.trim().to_owned(),
+            reason: change.reason.to_string(),
         };
         let sinks = Arc::clone(&self.sinks);
         self.change("another binding", |to| {
@@ -149,7 +142,7 @@ pub struct Change<'a> {
     /// Who wants it.
     pub operator: &'a str,
     /// Why.
-    pub reason: &'a str,
+    pub reason: &'a Reason,
 }
 
 /// A binding that cannot be changed.
@@ -170,19 +163,6 @@ pub enum RebindError {
         first: String,
         /// Another.
         second: String,
-    },
-    /// No reason was given for binding the unit to another device.
-    #[error("another binding needs a reason; say why: the reason is kept")]
-    NoReason,
-    /// The reason is longer than pages and events have room for.
-    #[error(
-        "the reason has {characters} characters, and another binding's has {most} at most; say it in fewer"
-    )]
-    TooLong {
-        /// Its length.
-        characters: usize,
-        /// The most.
-        most: usize,
     },
     /// The text is not the number of a device.
     #[error(

@@ -21,6 +21,7 @@ mod migrations;
 mod outbox;
 mod plan_versions;
 mod plant;
+mod reason;
 mod retention;
 mod retest_policy;
 mod rows;
@@ -54,6 +55,8 @@ pub use plant::{
     PlantLink, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
 };
 pub(crate) use plant::{KeptRun, LEASE_MS, PlantPool, publications, waiters};
+pub(crate) use reason::MOST_REASON;
+pub use reason::{Reason, ReasonError};
 pub use retention::Removed;
 pub use retest_policy::AgainError;
 pub use shared_store::SharedStore;
@@ -62,7 +65,6 @@ pub(crate) use snapshot::Rebuilt;
 pub use snapshot::{Snapshot, TABLES};
 pub(crate) use table::Key;
 pub use table::{Row, Rows};
-pub(crate) use waivers::MOST_REASON;
 pub use waivers::{NoWaiver, Waiver};
 
 use crate::clock::{self, HeardClock};

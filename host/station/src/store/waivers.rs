@@ -8,13 +8,10 @@ use serde::Serialize;
 
 use super::audit::Line;
 use super::database::{Database, DatabaseError, values};
-use super::{Kind, Store, StoreError, outbox, statements as sql};
+use super::{Kind, Reason, Store, StoreError, outbox, statements as sql};
 use crate::clock;
 use crate::ids;
 use crate::ids::NoRandomness;
-
-/// The longest reason of a waiver or of another binding, in characters.
-pub(crate) const MOST_REASON: usize = 500;
 
 /// A waiver of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -54,17 +51,6 @@ pub enum NoWaiver {
         /// The waiver that it has.
         waiver: Box<Waiver>,
     },
-    /// The waiver lacks a reason or a name.
-    #[error("a waiver needs a name and a reason; say both")]
-    Empty,
-    /// The waiver's reason is longer than pages and events have room for.
-    #[error("the reason has {characters} characters, and a waiver's has {most} at most; say it in fewer")]
-    TooLong {
-        /// Its length.
-        characters: usize,
-        /// The most.
-        most: usize,
-    },
     /// An id cannot be made.
     #[error(transparent)]
     NoRandomness(#[from] NoRandomness),
@@ -78,14 +64,8 @@ impl Store {
     ///
     /// # Errors
     /// [`NoWaiver`]
-    pub fn waive(&mut self, run: &str, operator: &str, reason: &str) -> Result<Waiver, NoWaiver> {
-        let (operator, reason) = (operator.trim(), reason.trim());
-        if operator.is_empty() || reason.is_empty() {
-            return Err(NoWaiver::Empty);
-        }
-        if let Some(characters) = too_long(reason) {
-            return Err(NoWaiver::TooLong { characters, most: MOST_REASON });
-        }
+    pub fn waive(&mut self, run: &str, operator: &str, reason: &Reason) -> Result<Waiver, NoWaiver> {
+        let reason: &str = reason;
         let stored = self.folder.verdict_of(run)?;
         let verdict = stored.ok_or_else(|| NoWaiver::NoRun { run: run.to_owned() })?.verdict;
         if verdict != Verdict::Fail {
@@ -110,11 +90,6 @@ impl Store {
         let [run, operator, reason] = [run, operator, reason].map(str::to_owned);
         Ok(Waiver { run, at_ms, operator, reason })
     }
-}
-
-/// The number of characters of a reason, if it is too long for pages and events.
-pub(super) fn too_long(reason: &str) -> Option<usize> {
-    Some(reason.chars().count()).filter(|characters| *characters > MOST_REASON)
 }
 
 fn waiver_of(database: &mut dyn Database, run: &str) -> Result<Option<Waiver>, DatabaseError> {

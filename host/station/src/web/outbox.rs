@@ -2,6 +2,7 @@
 
 use axum::Form;
 use axum::extract::{Path, State};
+use axum::http::StatusCode;
 use axum::response::{IntoResponse as _, Redirect, Response};
 use halfrow::words::plain;
 use maud::{Markup, html};
@@ -13,7 +14,8 @@ use super::routes::{Route, Who, act, look};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
-use crate::store::{DEAD_SHOWN, Dead, Entry, Kind, Unsent};
+use crate::said::Said;
+use crate::store::{DEAD_SHOWN, Dead, Entry, Kind, Reason, Unsent};
 
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/outbox", Who::Reader, page), act("/outbox/{id}/release", Who::Engineer, release)]
@@ -97,6 +99,8 @@ async fn release(
     Path(id): Path<String>,
     Form(Release { reason }): Form<Release>,
 ) -> Result<Response, Trouble> {
+    let reason = Reason::of(&reason)
+        .map_err(|error| Trouble::telling(&visit, StatusCode::BAD_REQUEST, &Said::of(&error)))?;
     let operator = visit.name().to_owned();
     let released = app.change(&visit, move |store| store.release(&id, &operator, &reason)).await?;
     released.map_err(|error| Trouble::store(&visit, &error))?;

@@ -11,6 +11,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
+use halfrow_station::store::Reason;
 use tempfile::TempDir;
 
 /// A plan whose runs take a moment; `scripts` and `packages` read it, too.
@@ -20,6 +21,11 @@ pub(crate) const PLAN: &str = include_str!("quick.toml");
 pub(crate) fn guarded_plan(product: &str, letters: &str) -> String {
     let pattern = format!("^{letters}(?<number>[0-9]{{9}}[0-9X])$");
     PLAN.replace("CAM-T", product).replace("^CAT[0-9]{5}$", &pattern).replace("\"none\"", "\"mod11\"")
+}
+
+/// Why a person does something.
+pub(crate) fn reason(text: &str) -> Reason {
+    Reason::of(text).unwrap()
 }
 
 /// Milliseconds since 1970.

@@ -1,7 +1,7 @@
 //! What a person does about entries of the outbox. All of it is in the audit.
 
 use super::super::database::values;
-use super::super::{Store, StoreError, statements as sql};
+use super::super::{Reason, Store, StoreError, statements as sql};
 
 impl Store {
     /// Has every sink where the entry of this id waits for a person try it again; the audit keeps who said so, and why. Returns
@@ -9,7 +9,7 @@ impl Store {
     ///
     /// # Errors
     /// Like [`Self::sends_to`].
-    pub fn release(&mut self, subject: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
+    pub fn release(&mut self, subject: &str, operator: &str, reason: &Reason) -> Result<u64, StoreError> {
         self.released(sql::OUTBOX_RELEASED, subject, operator, reason)
     }
 
@@ -22,13 +22,13 @@ impl Store {
         &mut self,
         sink: &str,
         operator: &str,
-        reason: &str,
+        reason: &Reason,
     ) -> Result<u64, StoreError> {
         self.released(sql::OUTBOX_ALL_RELEASED, sink, operator, reason)
     }
 
-    fn released(&mut self, text: &str, of: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
-        let line = [operator, "release", of, reason];
+    fn released(&mut self, text: &str, of: &str, operator: &str, reason: &Reason) -> Result<u64, StoreError> {
+        let line: [&str; 4] = [operator, "release", of, reason];
         self.audited("what is to be sent again", line, |to| to.execute(text, values![of]))
     }
 
@@ -41,7 +41,7 @@ impl Store {
         &mut self,
         sink: &str,
         operator: &str,
-        reason: &str,
+        reason: &Reason,
     ) -> Result<u64, StoreError> {
         let mut unsent = 0;
         self.audited("that a sink is no more", [operator, "forget-sink", sink, reason], |to| {
@@ -56,8 +56,13 @@ impl Store {
     ///
     /// # Errors
     /// Like [`Self::sends_to`].
-    pub(crate) fn send_again(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
-        let line = [operator, "send-again", sink, reason];
+    pub(crate) fn send_again(
+        &mut self,
+        sink: &str,
+        operator: &str,
+        reason: &Reason,
+    ) -> Result<u64, StoreError> {
+        let line: [&str; 4] = [operator, "send-again", sink, reason];
         self.audited("that a sink has nothing", line, |to| to.execute(sql::OUTBOX_AGAIN, values![sink]))
     }
 }

@@ -12,7 +12,7 @@ use super::run_filter::{RunFilter, unit_address};
 use super::{run, show, unit};
 use crate::history::unit::{Unit, UnitRun};
 use crate::said::Said;
-use crate::store::{Change, MOST_REASON, NoWaiver, RebindError};
+use crate::store::{Change, MOST_REASON, NoWaiver, Reason, RebindError, Rebinding, Store};
 use crate::web::language::Sentence;
 use crate::web::routes::Who;
 use crate::web::state::App;
@@ -54,16 +54,23 @@ pub(super) async fn waive(
     Form(Waive { reason }): Form<Waive>,
 ) -> Result<Response, Trouble> {
     let (run, name) = (id.clone(), visit.name().to_owned());
-    let waived = app.change(&visit, move |store| store.waive(&run, &name, &reason)).await?;
-    let status = match &waived {
-        Ok(_) => return Ok(Redirect::to(&show::run_address(&id)).into_response()),
-        Err(NoWaiver::NoRun { .. }) => StatusCode::NOT_FOUND,
-        Err(NoWaiver::Empty | NoWaiver::TooLong { .. }) => StatusCode::BAD_REQUEST,
-        Err(NoWaiver::NoFail { .. } | NoWaiver::Waived { .. }) => StatusCode::CONFLICT,
-        Err(NoWaiver::NoRandomness(_) | NoWaiver::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
+    let (status, said) = match Reason::of(&reason) {
+        Ok(reason) => match app.change(&visit, move |store| store.waive(&run, &name, &reason)).await? {
+            Ok(_) => return Ok(Redirect::to(&show::run_address(&id)).into_response()),
+            Err(error) => (not_waived(&error), Said::of(&error)),
+        },
+        Err(error) => (StatusCode::BAD_REQUEST, Said::of(&error)),
     };
-    let refused = waived.err().map(|error| RefusedAct::new(&visit, status, &Said::of(&error)));
-    run::shown(app, visit, id, refused).await
+    let refused = RefusedAct::new(&visit, status, &said);
+    run::shown(app, visit, id, Some(refused)).await
+}
+
+const fn not_waived(error: &NoWaiver) -> StatusCode {
+    match error {
+        NoWaiver::NoRun { .. } => StatusCode::NOT_FOUND,
+        NoWaiver::NoFail { .. } | NoWaiver::Waived { .. } => StatusCode::CONFLICT,
+        NoWaiver::NoRandomness(_) | NoWaiver::Store(_) => StatusCode::SERVICE_UNAVAILABLE,
+    }
 }
 
 #[derive(Deserialize)]
@@ -83,29 +90,33 @@ pub(super) async fn rebind(
 ) -> Result<Response, Trouble> {
     let serial = asked.serial.clone();
     let name = visit.name().to_owned();
-    let change = move |store: &mut crate::store::Store| {
+    let (status, said) = match Reason::of(&asked.reason) {
+        Ok(reason) => match app.change(&visit, move |store| asked.rebind(store, &name, &reason)).await? {
+            Ok(_) => return Ok(Redirect::to(&unit_address(&serial)).into_response()),
+            Err(error) => (not_rebound(&error), Said::of(&error)),
+        },
+        Err(error) => (StatusCode::BAD_REQUEST, Said::of(&error)),
+    };
+    let refused = RefusedAct::new(&visit, status, &said);
+    unit::shown(app, visit, RunFilter::of_serial(&serial), Some(refused)).await
+}
+
+impl Rebind {
+    fn rebind(&self, store: &mut Store, operator: &str, reason: &Reason) -> Result<Rebinding, RebindError> {
         let some = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
-        let (product, device) = (some(&asked.product), some(&asked.device));
-        store.rebind(&Change {
-            serial: &asked.serial,
-            product: product.as_deref(),
-            device: device.as_deref(),
-            operator: &name,
-            reason: &asked.reason,
-        })
-    };
-    let bound = app.change(&visit, change).await?;
-    let status = match &bound {
-        Ok(_) => return Ok(Redirect::to(&unit_address(&serial)).into_response()),
-        Err(RebindError::Unknown { .. }) => StatusCode::NOT_FOUND,
-        Err(RebindError::NoReason | RebindError::TooLong { .. } | RebindError::NoDevice { .. }) => {
-            StatusCode::BAD_REQUEST
-        }
-        Err(RebindError::Several { .. } | RebindError::UnderTest { .. }) => StatusCode::CONFLICT,
-        Err(RebindError::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
-    };
-    let refused = bound.err().map(|error| RefusedAct::new(&visit, status, &Said::of(&error)));
-    unit::shown(app, visit, RunFilter::of_serial(&serial), refused).await
+        let (product, device) = (some(&self.product), some(&self.device));
+        let (product, device) = (product.as_deref(), device.as_deref());
+        store.rebind(&Change { serial: &self.serial, product, device, operator, reason })
+    }
+}
+
+const fn not_rebound(error: &RebindError) -> StatusCode {
+    match error {
+        RebindError::Unknown { .. } => StatusCode::NOT_FOUND,
+        RebindError::NoDevice { .. } => StatusCode::BAD_REQUEST,
+        RebindError::Several { .. } | RebindError::UnderTest { .. } => StatusCode::CONFLICT,
+        RebindError::Store(_) => StatusCode::SERVICE_UNAVAILABLE,
+    }
 }
 
 /// The form by which an engineer waives the FAIL of a run that has no waiver.

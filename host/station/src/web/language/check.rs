@@ -18,7 +18,7 @@ const SAID: &str = "said";
 const REMEDY: &str = "remedy";
 
 /// The types of the station's errors that operators, or engineers at a page, may see.
-const OF_STATION: [&str; 22] = [
+const OF_STATION: [&str; 23] = [
     "SerialError",
     "ScanError",
     "Refusal",
@@ -33,6 +33,7 @@ const OF_STATION: [&str; 22] = [
     "DiskError",
     "LabgridError",
     "RecordError",
+    "ReasonError",
     "RebindError",
     "NoWaiver",
     "HookError",

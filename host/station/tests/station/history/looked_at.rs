@@ -10,7 +10,7 @@ use halfrow_station::record::{Record, RunCause};
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use super::served::{self, Served};
 use super::yields::{CASES, enter};
-use crate::common::{self, program};
+use crate::common::{self, program, reason};
 
 /// Sixty runs of seven units in three lanes by two operators, one every hour.
 fn many() -> (Served, Vec<(String, Run)>) {
@@ -175,7 +175,7 @@ fn what_a_scanner_or_a_person_said_is_never_markup() {
     run.started_ms += HOUR_MS;
     run.end = End::Pass;
     made.run(&run);
-    made.store.waive(&failed, script, script).unwrap();
+    made.store.waive(&failed, script, &reason(script)).unwrap();
     let served = Served::of(made);
     let unit = "/unit?serial=%3Cscript%3Ealert(1)%3C%2Fscript%3E%22%27%26";
     let query = "/history?serial=%3Cscript%3E&operator=%22%3E%3Cscript%3E";
@@ -196,7 +196,7 @@ fn a_run_s_page_says_all_of_it_and_gives_it_to_others() {
     let mut made = Made::new();
     let run = Run { evidence: vec!["<h1>told</h1>"], ..Run::of("S1", End::Fail(&["memory", "clock"])) };
     let id = made.run(&run);
-    made.store.waive(&id, "engel", "used as it is").unwrap();
+    made.store.waive(&id, "engel", &reason("used as it is")).unwrap();
     let served = Served::of(made);
     let page = served.page(&format!("/runs/{id}"));
     for said in [

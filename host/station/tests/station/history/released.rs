@@ -15,7 +15,7 @@ use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
-use crate::common::{program, query};
+use crate::common::{program, query, reason};
 
 /// Each format, and the name of its export.
 const FORMATS: [(&str, &str); 4] =
@@ -327,13 +327,13 @@ pub(crate) fn history() -> Made {
     made.run(&Run { operator: "O'Neil, \"J\"\n<&>".to_owned(), ..run("S4", End::TooLate, 25) });
     made.run(&run("S5", End::Error(RunCause::Operator), 26));
     made.run(&run("S6", End::Open, 27));
-    made.store.waive(&failed, "engel", "it's \"as\" is").unwrap();
+    made.store.waive(&failed, "engel", &reason("it's \"as\" is")).unwrap();
     let change = Change {
         serial: "S2",
         product: None,
         device: Some("00a1b2c3d4e5f607"),
         operator: "engel",
-        reason: "a new FPGA",
+        reason: &reason("a new FPGA"),
     };
     made.store.rebind(&change).unwrap();
     made

@@ -5,6 +5,7 @@ use halfrow_station::record::RunCause;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use super::served::Served;
+use crate::common::reason;
 
 #[test]
 fn a_unit_has_its_runs_and_nobody_elses_with_all_that_belongs_to_them() {
@@ -15,7 +16,7 @@ fn a_unit_has_its_runs_and_nobody_elses_with_all_that_belongs_to_them() {
         made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S2", End::Fail(&["clock"])) });
         ids.push(made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S1", end) }));
     }
-    made.store.waive(&ids[1], "engel", "used as it is").unwrap();
+    made.store.waive(&ids[1], "engel", &reason("used as it is")).unwrap();
     let units = units(&made.now(), "S1").unwrap();
     let [unit] = &units[..] else { panic!("{units:?}") };
     assert_eq!((unit.serial.as_str(), unit.first_seen_ms), ("S1", BEGIN_MS));

@@ -6,7 +6,7 @@ use halfrow_station::record::RunCause;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use super::served::Served;
-use crate::common::now_ms;
+use crate::common::{now_ms, reason};
 
 /// Runs in their order: the unit, then `P` for PASS, `F` FAIL, `W` a waived FAIL, `E` ERROR, `C` a crash, `R` refused, `O` open;
 /// then the plan's name and version unless they are `final,1`. Next to them what counts for the plan `final`:
@@ -85,7 +85,7 @@ pub(crate) fn enter(made: &mut Made, word: &str, hour: i64) {
     let run = Run { plan, started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of(serial, ends) };
     let id = made.run(&run);
     if end == "W" {
-        made.store.waive(&id, "engel", "used as it is").unwrap();
+        made.store.waive(&id, "engel", &reason("used as it is")).unwrap();
     }
 }
 

@@ -25,8 +25,22 @@ fn a_reason_that_is_longer_than_the_form_takes_waives_nothing() {
     let (station, serving, run) = failed();
     let act = format!("/runs/{run}/waive");
     let long = serving.engineer().post(&act, &[("reason", &"x".repeat(501))]).send();
-    assert!(long.status == 400 && long.text().contains("waiver-reason-too-long"), "{}", long.text());
+    assert!(long.status == 400 && long.text().contains("reason-too-long"), "{}", long.text());
     assert_eq!(station.query("SELECT id FROM waiver"), Vec::<String>::new());
+}
+
+/// The audit would have a line without one.
+#[test]
+fn nothing_is_sent_again_without_a_reason_that_fits() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let release = |reason: &str| serving.engineer().post("/outbox/1/release", &[("reason", reason)]).send();
+    let long = "x".repeat(501);
+    for (reason, said) in [(" ", "there is no reason"), (&long, "the reason has 501 characters")] {
+        let refused = release(reason);
+        assert!(refused.status == 400 && refused.text().contains(said), "{}", refused.text());
+    }
+    assert_eq!(release("looked at").status, 303);
 }
 
 #[test]
@@ -38,16 +52,10 @@ fn an_engineer_waives_a_fail_once_and_with_a_reason_and_everyone_sees_it() {
     assert!(!page(&operator, &path).contains(&form), "an operator has no such form");
     assert!(page(&engineer, &path).contains(&form));
     assert_eq!(operator.post(&act, &[("reason", "x")]).send().status, 403);
-    for (language, said) in
-        [("en", "a waiver needs a name and a reason"), ("de", "eine Freigabe braucht Namen und Grund")]
-    {
+    for (language, said) in [("en", "there is no reason"), ("de", "es fehlt der Grund")] {
         let empty = engineer.post(&act, &[("reason", " ")]).with("accept-language", language).send();
         assert_eq!(empty.status, 400);
-        assert!(
-            empty.text().contains(said) && empty.text().contains("waiver-without-reason"),
-            "{}",
-            empty.text()
-        );
+        assert!(empty.text().contains(said) && empty.text().contains("reason-missing"), "{}", empty.text());
         assert!(empty.text().contains(&form), "and the form is there still");
     }
     assert_eq!(station.query("SELECT id FROM waiver"), Vec::<String>::new());
@@ -91,8 +99,8 @@ fn an_engineer_binds_a_unit_to_another_device_with_a_reason() {
     for (device, reason, code) in [
         ("00000000000000Ff", "repaired", "device-malformed"),
         ("0000000000000000", "repaired", "device-malformed"),
-        ("00000000000000ff", " ", "rebind-without-reason"),
-        ("00000000000000ff", &long, "rebind-reason-too-long"),
+        ("00000000000000ff", " ", "reason-missing"),
+        ("00000000000000ff", &long, "reason-too-long"),
     ] {
         let refused = bind(&engineer, device, reason);
         assert_eq!(refused.status, 400, "{device}");

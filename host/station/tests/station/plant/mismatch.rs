@@ -12,7 +12,7 @@ use super::late::parcels;
 use super::pages::{served, settings, text};
 use super::sent::send_as;
 use super::server::Server;
-use crate::common::{Did, program};
+use crate::common::{Did, program, reason};
 use crate::history::commands::misread;
 use crate::history::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run, id};
 use crate::metrics::text::Figures;
@@ -101,7 +101,8 @@ fn a_person_who_binds_anew_settles_it_until_somebody_judges_otherwise_again() {
     send_as("station 7", seven, server.address());
     let [d1, ..] = DEVICES;
     let rebind = |made: &mut Made, serial, device| {
-        let change = Change { serial, product: None, device, operator: "engel", reason: "labels exchanged" };
+        let change =
+            Change { serial, product: None, device, operator: "engel", reason: &reason("labels exchanged") };
         made.store.rebind(&change).unwrap();
     };
     rebind(&mut eight, "B3", None);

@@ -6,6 +6,7 @@ use halfrow_station::store::{Plant, Snapshot};
 use super::sent::send;
 use super::server::Server;
 use super::tables::is_as;
+use crate::common::reason;
 use crate::history::made::{End, Made, Run};
 use crate::history::released::history;
 
@@ -16,7 +17,7 @@ fn no_character_keeps_a_result_from_the_plant() {
     let mut made = Made::new();
     let run = Run { operator: "we\0ber".to_owned(), ..Run::of("S1", End::Fail(&["memory"])) };
     let run = made.run(&run);
-    made.store.waive(&run, "engel", "used\0as it is").unwrap();
+    made.store.waive(&run, "engel", &reason("used\0as it is")).unwrap();
     made.store.note("weber", "scan", "CA\0", "").unwrap();
     let (made, all) = send(made, server.address());
     // A run, a waiver with its line in the audit, and a further line.

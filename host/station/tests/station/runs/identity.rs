@@ -13,7 +13,7 @@ use halfrow_station::store::{Admission, Change, RebindError, SharedStore};
 
 use super::bench::{Did, PLAN, Station, program};
 use super::ends::with_link;
-use crate::common::folder;
+use crate::common::{folder, reason};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 
 /// The mock board whose FPGA has this number.
@@ -185,7 +185,7 @@ fn a_device_that_is_being_judged_is_admitted_and_bound_nowhere_else() {
     let other = admit(&second);
     assert!(matches!(other, Admission::Refused { .. }), "{other:?}");
     for (serial, device) in [("CAT00017", None), ("CAT00071", Some(device))] {
-        let change = Change { serial, product: None, device, operator: "engineer", reason: "x" };
+        let change = Change { serial, product: None, device, operator: "engineer", reason: &reason("x") };
         let bound = made.store.rebind(&change);
         assert!(matches!(bound, Err(RebindError::UnderTest { .. })), "{bound:?}");
     }
@@ -259,7 +259,7 @@ fn a_run_after_a_change_of_a_binding_has_a_later_id_whatever_the_clock_says() {
         product: None,
         device: None,
         operator: "engineer",
-        reason: "x",
+        reason: &reason("x"),
     };
     made.store.rebind(&change).unwrap();
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();

@@ -13,7 +13,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::send;
-use crate::common::{listening, query};
+use crate::common::{listening, query, reason};
 use crate::history::made::{End, Made, Run};
 use crate::plant::link::certificates;
 
@@ -118,7 +118,7 @@ fn station() -> TempDir {
     made.run(&Run { started_ms: minute_ago - 7_200_000, ..Run::of("OLD", End::Pass) });
     let failed =
         made.run(&Run { started_ms: minute_ago, production: false, ..Run::of("NEW", End::Fail(&["clock"])) });
-    made.store.waive(&failed, "engel", "seen").unwrap();
+    made.store.waive(&failed, "engel", &reason("seen")).unwrap();
     let folder = made.closed();
     // Earlier programs accepted a reason of any length.
     let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
