@@ -167,6 +167,7 @@ codes::codes! {
         Target [board, target] => "shared-board-without-place",
         NotTaken [run, said] => "job-run-not-taken",
         = Run,
+        = Again,
     }
     Lost {
         Taken [board] => "shared-board-taken",

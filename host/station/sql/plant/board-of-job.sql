@@ -1,9 +1,16 @@
--- A free board that is this unit, or of this kind, and that nobody waits for.
-SELECT name FROM board
-WHERE product = $1 AND station IN ('', $2) AND out IS NULL
-  AND (serial = $3 OR ($3 = '' AND kind = $4 AND serial <> ''))
+-- A free board that is the unit of the job, or of its kind, and that nobody waits for. One of its kind that passed already is none
+-- if the plan is one of these.
+SELECT board.name FROM board, job
+WHERE job.id = $1 AND board.product = job.product AND board.station IN ('', $2) AND board.out IS NULL
+  AND (
+    board.serial = job.serial
+    OR (
+      job.serial = '' AND board.kind = job.kind AND board.serial <> ''
+      AND (job.plan_sha256 <> ALL (string_to_array($3, ' ')) OR {last_verdict} IS DISTINCT FROM 'PASS')
+    )
+  )
   AND {free}
   AND NOT {waited_for}
-ORDER BY station = '', name
+ORDER BY board.station = '', board.name
 LIMIT 1
-FOR UPDATE SKIP LOCKED;
+FOR UPDATE OF board SKIP LOCKED;

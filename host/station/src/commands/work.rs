@@ -18,6 +18,7 @@ use crate::exit::Exit;
 use crate::guard::guarded;
 use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::Outbox;
+use crate::plan::{Again, Plan};
 use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{Claim, PlantLink, SharedStore, Store, Worker};
@@ -153,11 +154,13 @@ fn one_by_one(
 
 fn worker(settings: &Settings) -> Result<Worker, Failure> {
     let work = settings.work.as_ref().ok_or_else(|| Failure::call(NoWork))?;
-    let plans = work.plans.iter().filter_map(|place| settings.plans.get(*place));
+    let plans = || work.plans.iter().filter_map(|place| Some(&settings.plans.get(*place)?.plan));
+    let hashes = |plan: &Plan| plan.sha256.clone();
     Ok(Worker {
         holder: format!("{} {:016x}", settings.name, rng().random::<u64>()),
         station: settings.name.clone(),
-        plans: plans.map(|file| file.plan.sha256.clone()).collect(),
+        plans: plans().map(hashes).collect(),
+        once: plans().filter(|plan| plan.again != Again::Allow).map(hashes).collect(),
         has: work.has.clone(),
     })
 }

@@ -2,7 +2,7 @@
 
 use halfrow::Verdict;
 
-use super::database::values;
+use super::database::{Database, DatabaseError, values};
 use super::{Folder, StoreError, statements as sql};
 use crate::clock;
 use crate::plan::{Again, Plan};
@@ -30,6 +30,13 @@ pub enum AgainError {
     },
 }
 
+impl AgainError {
+    /// The unit of this serial number passed at this time.
+    pub(super) fn refused(serial: &str, passed_ms: i64) -> Self {
+        Self::Refused { serial: serial.to_owned(), when: when(passed_ms) }
+    }
+}
+
 impl Folder {
     /// Why the unit of this serial number is not simply tested again: its last judgement under this very plan is PASS.
     /// `how` says how to have it tested all the same. Units that check shifts are always tested.
@@ -45,18 +52,26 @@ impl Folder {
         if plan.again == Again::Allow || plan.production.is_reference(serial) {
             return Ok(None);
         }
-        let last: Option<(Verdict, i64)> = self.read("to tell whether a unit passed", |from| {
-            let of = values![&plan.product, serial, &plan.sha256];
-            from.first(sql::PASSED, of, |row| Ok((row.get(0)?, row.get(1)?)))
-        })?;
-        let Some((_, ms)) = last.filter(|(verdict, _)| *verdict == Verdict::Pass) else {
-            return Ok(None);
-        };
-        let when = clock::local(ms).strftime("%Y-%m-%dT%H:%M:%S%:z").to_string();
-        let serial = serial.to_owned();
-        Ok(Some(match plan.again {
-            Again::Ask => AgainError::Asked { serial, when, how },
-            Again::Refuse | Again::Allow => AgainError::Refused { serial, when },
+        let passed = self.read("to tell whether a unit passed", |from| passed(from, plan, serial))?;
+        Ok(passed.map(|ms| match plan.again {
+            Again::Ask => AgainError::Asked { serial: serial.to_owned(), when: when(ms), how },
+            Again::Refuse | Again::Allow => AgainError::refused(serial, ms),
         }))
     }
+}
+
+/// When the unit of this serial number passed, in milliseconds since 1970, UTC, if that is its last judgement under this very
+/// plan.
+pub(super) fn passed(
+    from: &mut dyn Database,
+    plan: &Plan,
+    serial: &str,
+) -> Result<Option<i64>, DatabaseError> {
+    let of = values![&plan.product, serial, &plan.sha256];
+    let last: Option<(Verdict, i64)> = from.first(sql::PASSED, of, |row| Ok((row.get(0)?, row.get(1)?)))?;
+    Ok(last.filter(|(verdict, _)| *verdict == Verdict::Pass).map(|(_, ms)| ms))
+}
+
+fn when(ms: i64) -> String {
+    clock::local(ms).strftime("%Y-%m-%dT%H:%M:%S%:z").to_string()
 }

@@ -12,10 +12,18 @@ pub(super) const SCHEMAS: [&str; 7] = [
     include_str!("../../sql/schema-7.sql"),
 ];
 
-/// Words of a plant's statements about boards: whether a board is free, whether somebody waits for it who reaches it, a waiter's
-/// station, and the time by the plant's clock, in milliseconds since 1970, UTC. Earlier ones use later ones.
-pub(super) const OF_BOARDS: [(&str, &str); 4] = [
+/// Words of a plant's statements about boards: whether a board is free, the last judgement of its unit by the plan of a job,
+/// whether somebody waits for it who reaches it, a waiter's station, and the time by the plant's clock, in milliseconds since 1970,
+/// UTC. Earlier ones use later ones.
+pub(super) const OF_BOARDS: [(&str, &str); 5] = [
     ("{free}", "(board.holder IS NULL OR board.until_ms < {now_ms})"),
+    (
+        "{last_verdict}",
+        "(SELECT run.verdict FROM run JOIN unit ON unit.id = run.unit_id
+           WHERE unit.product = board.product AND unit.serial = board.serial AND run.plan_sha256 = job.plan_sha256
+             AND run.nth > 0 AND run.verdict IN ('PASS', 'FAIL')
+           ORDER BY run.id DESC LIMIT 1)",
+    ),
     (
         "{waited_for}",
         "EXISTS (SELECT 1 FROM waiter WHERE waiter.kind = board.kind AND waiter.until_ms >= {now_ms}
@@ -151,6 +159,7 @@ statements! {
     pub(super) EXHAUSTED_JOBS = "plant/exhausted-jobs.sql";
     pub(super) JOB_DONE = "plant/job-done.sql";
     pub(super) JOB_BACK = "plant/job-back.sql";
+    pub(super) REFUSE_JOB = "plant/refuse-job.sql";
     pub(super) RUN_OF_JOB = "plant/run-of-job.sql";
     pub(super) NTH_OF = "plant/nth-of.sql";
     pub(super) SUPERSEDING_JOB = "plant/superseding-job.sql";

@@ -23,11 +23,14 @@ pub use held::{Held, Holding, Lost};
 use crate::clock;
 use crate::labgrid::LaneBoard;
 use crate::outbox::{Sent, awaited};
+use crate::plan::Plan;
 use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Claim, InLane, Introduction, PlantError, PlantLink, SharedStore, StoreError, Worker};
+use crate::store::{
+    AgainError, Claim, InLane, Introduction, PlantError, PlantLink, SharedStore, StoreError, Worker,
+};
 
 /// The operator in records and in the plant's audit.
 const OPERATOR: &str = "job";
@@ -46,6 +49,9 @@ pub enum WorkError {
     /// The run has no verdict.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// The unit passed already, and the plan does not let it be judged again.
+    #[error(transparent)]
+    Again(#[from] AgainError),
     /// The station lacks the plan of a job, although it said that it has it.
     #[error("this station does not have the plan {sha256} of the job {job}; report this with the version")]
     NoPlan {
@@ -185,14 +191,8 @@ impl Work<'_> {
         }
         let saved = match ended {
             Ok(saved) => saved,
-            Err(error) if error.is_not_begun() => {
-                self.decline(&claim);
-                return Err(error);
-            }
             Err(error) => {
-                let said = Said::of(&error).to_string();
-                let back = self.plant.ask(|plant| plant.fail(&claim, &said));
-                free_later(&claim.job, back);
+                self.give_back(&claim, &error);
                 return Err(error);
             }
         };
@@ -203,6 +203,19 @@ impl Work<'_> {
         let refused = if let Sent::Refused(said) = sent { Some(said.to_string()) } else { None };
         holding.end();
         Ok(JobResult { claim, is_sent, refused, counts, saved })
+    }
+
+    /// Gives back a job that came to no run. One whose unit must not be judged ends here.
+    fn give_back(&self, claim: &Claim, error: &WorkError) {
+        if error.is_not_begun() {
+            return self.decline(claim);
+        }
+        let said = Said::of(error).to_string();
+        let back = self.plant.ask(|plant| match error {
+            WorkError::Again(_) => plant.refuse(claim, &said),
+            _ => plant.fail(claim, &said),
+        });
+        free_later(&claim.job, back);
     }
 
     /// Waits until another job may get further than the one that ended with `error`. What could not be saved is closed first,
@@ -253,6 +266,7 @@ impl Work<'_> {
         let Some(PlanFile { path, plan }) = file else {
             return Err(WorkError::NoPlan { job: claim.job.clone(), sha256: claim.plan_sha256.clone() });
         };
+        self.refuse_passed(claim, plan)?;
         let (station, lane) = (&self.worker.station, &claim.lease.board);
         let counts = self.store.with(|store| {
             store.folder().counts(&InLane::of(station, lane, plan), claim.serial(), clock::now_ms())
@@ -278,6 +292,16 @@ impl Work<'_> {
             _ => self.aside.take_back(plan),
         }
         Ok(ended?)
+    }
+
+    /// Refuses a unit that passed if the plan does. The plant knows it, because a job is done and its board free only once its run is
+    /// there.
+    fn refuse_passed(&self, claim: &Claim, plan: &Plan) -> Result<(), WorkError> {
+        let refused = self.plant.ask(|plant| plant.refuses(plan, claim.serial()));
+        match refused.map_err(|error| RunError::NotBegun(Box::new(error)))? {
+            Some(error) => Err(error.into()),
+            None => Ok(()),
+        }
     }
 
     /// Tells the plant of this station, from which it takes nothing while another one has its name. Waits for a plant that is

@@ -6,10 +6,10 @@ use halfrow::Verdict;
 use serde::Serialize;
 
 use super::super::database::{Database, DatabaseError, FromValue, Row, Value, values};
-use super::super::{Snapshot, StoreError, statements as sql};
+use super::super::{AgainError, Snapshot, StoreError, retest_policy, statements as sql};
 use super::boards::{LEASE_MS, Lease, hold};
 use super::{Plant, arrived};
-use crate::plan::Plan;
+use crate::plan::{Again, Plan};
 use crate::{clock, ids};
 
 /// How it stands with a job.
@@ -126,6 +126,8 @@ pub struct Worker {
     pub station: String,
     /// The hashes of its plans.
     pub plans: Vec<String>,
+    /// The hashes of those by which a unit that passed is not judged again unless somebody means this very unit.
+    pub once: Vec<String>,
     /// What it has that jobs may need.
     pub has: Vec<String>,
 }
@@ -241,6 +243,29 @@ impl Plant {
             .map(drop)
     }
 
+    /// Why no job may have the unit of this serial number judged: it passed, and the plan does not let it be judged again. A plan
+    /// that only asks does, because somebody added the job.
+    ///
+    /// # Errors
+    /// Like [`Self::add_jobs`].
+    pub fn refuses(&mut self, plan: &Plan, serial: &str) -> Result<Option<AgainError>, StoreError> {
+        if plan.again != Again::Refuse || plan.production.is_reference(serial) {
+            return Ok(None);
+        }
+        let passed = self
+            .carry_out("to tell whether a unit passed", |from| retest_policy::passed(from, plan, serial))?;
+        Ok(passed.map(|ms| AgainError::refused(serial, ms)))
+    }
+
+    /// Ends a job whose unit must not be judged, for this reason.
+    ///
+    /// # Errors
+    /// Like [`Self::add_jobs`].
+    pub fn refuse(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
+        let Claim { job, fence, .. } = claim;
+        self.carry_out("to end a job", |to| to.execute(sql::REFUSE_JOB, values![said, job, *fence])).map(drop)
+    }
+
     /// Whether a run counts; none if it is not there.
     ///
     /// # Errors
@@ -255,15 +280,14 @@ impl Plant {
 
 /// Claims a job and its board, or neither: the rows are locked until the transaction ends.
 fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, DatabaseError> {
-    let Worker { holder, station, plans, has } = worker;
+    let Worker { holder, station, plans, once, has } = worker;
     to.execute(sql::EXHAUSTED_JOBS, &[])?;
-    let (plans, has) = (plans.join(" "), has.join(" "));
-    let of = values![station, &plans, &has];
-    let found: Option<[String; 4]> =
-        to.first(sql::CLAIMABLE_JOB, of, |row| Ok([row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?]))?;
-    let Some([id, product, serial, kind]) = found else { return Ok(None) };
+    let [once, plans, has] = [once, plans, has].map(|words| words.join(" "));
+    let id: Option<String> =
+        to.first(sql::CLAIMABLE_JOB, values![station, &once, &plans, &has], |row| row.get(0))?;
+    let Some(id) = id else { return Ok(None) };
     let board: Option<String> =
-        to.first(sql::BOARD_OF_JOB, values![&product, station, &serial, &kind], |row| row.get(0))?;
+        to.first(sql::BOARD_OF_JOB, values![&id, station, &once], |row| row.get(0))?;
     // Somebody else was quicker.
     let Some(board) = board else { return Ok(None) };
     let lease = hold(to, &board, holder)?;

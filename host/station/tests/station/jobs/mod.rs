@@ -1,5 +1,6 @@
 //! Jobs of a plant, and boards that several computers share, on a real PostgreSQL server.
 
+mod again;
 mod boards;
 mod changed;
 pub(crate) mod claims;
@@ -76,7 +77,7 @@ pub(crate) fn job<'a>(plan: &'a Plan, wanted: &'a Wanted) -> NewJob<'a> {
 /// A worker of this station, which only has the plan.
 pub(crate) fn worker(station: &str) -> Worker {
     let [holder, station] = [format!("{station} 1"), station.to_owned()];
-    Worker { holder, station, plans: vec![plan().sha256], has: Vec::new() }
+    Worker { holder, station, plans: vec![plan().sha256], once: Vec::new(), has: Vec::new() }
 }
 
 /// Lets all leases run out, as if their holders had been silent for long.
