@@ -75,12 +75,15 @@ impl Snapshot {
     /// The tables of a plant, until [`Self::end`].
     ///
     /// # Errors
-    /// [`StoreError::Plant`] when it is not there.
+    /// [`StoreError`] when it is not there, or its tables were made older or newer since the connection was made.
     pub fn of_plant(plant: Plant) -> Result<Self, StoreError> {
         let Plant { shown, database } = plant;
-        let snapshot = Self { of: Of::Plant(shown), reader: RefCell::new(database) };
-        snapshot
-            .read("to be read", |reader| reader.batch("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"))?;
+        let snapshot = Self { of: Of::Plant(shown.clone()), reader: RefCell::new(database) };
+        let found = snapshot.read("to be read", |reader| {
+            reader.batch("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY")?;
+            migrations::newest(reader)
+        })?;
+        migrations::refuse_unknown_version(&shown, found)?;
         Ok(snapshot)
     }
 

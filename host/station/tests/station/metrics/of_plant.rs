@@ -57,6 +57,21 @@ fn a_plant_tells_of_all_stations_and_says_when_it_is_away() {
     assert_eq!(Figures::of(&serving).samples, figures.samples);
 }
 
+/// The page's connection, which is kept, is older than the tables.
+#[test]
+fn a_plant_whose_tables_a_newer_program_has_changed_meanwhile_is_not_read() {
+    let server = Server::prepared();
+    let (_folder, serving) = served(&server);
+    let is_up = || Figures::of(&serving).at("halfrow_plant_up");
+    assert_eq!(is_up(), 1.0);
+    server.client("plant").batch_execute("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
+    assert_eq!(is_up(), 0.0);
+    let page = serving.here().get("/").send();
+    assert!(page.status == 503 && page.text().contains("has version 99"), "{}", page.text());
+    server.client("plant").batch_execute("DELETE FROM schema_version WHERE n = 99").unwrap();
+    assert_eq!(is_up(), 1.0);
+}
+
 /// What the program did with these settings and this on stdin.
 fn did(arguments: &[&str], settings: &Path, said: &str) -> Did {
     let mut child = Command::new(program())
