@@ -51,6 +51,12 @@ pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
     }
 }
 
+/// Whether there is a device that can be plugged in and out at `board`, so that it may be absent.
+#[must_use]
+pub(crate) fn is_pluggable(board: &Target) -> bool {
+    matches!(board.kind.as_str(), "serial" | "usb") && board.address.is_some()
+}
+
 /// Whether both names are of one board, as far as they and what is plugged in say. A chip that `usb:` names has one board,
 /// unless the name says at which channel, and `ports` says which serial ports are of that chip, too. Two ports of a chip may
 /// have a board each.

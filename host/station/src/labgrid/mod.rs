@@ -72,6 +72,11 @@ impl LaneBoard {
             Self::Lent(_) => true,
         }
     }
+
+    /// Whether it may be absent: a lane notices when such a board comes.
+    pub(crate) fn is_pluggable(&self) -> bool {
+        matches!(self, Self::Own(target) if presence::is_pluggable(target))
+    }
 }
 
 impl fmt::Display for LaneBoard {

@@ -15,6 +15,7 @@ use super::{
 };
 use crate::floor::Starts;
 use crate::input_error::Fault;
+use crate::labgrid::LaneBoard;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
 use crate::published::named_by;
 use crate::web::{Address, AddressError};
@@ -272,10 +273,11 @@ fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneS
         }
         of_lane.push(plan);
     }
-    Ok(LaneSettings { name: name.clone(), board, plans: of_lane, starts: starts(text)? })
+    let starts = starts(text, &board)?;
+    Ok(LaneSettings { name: name.clone(), board, plans: of_lane, starts })
 }
 
-fn starts(text: &LaneText) -> Result<Starts, Fault> {
+fn starts(text: &LaneText, board: &LaneBoard) -> Result<Starts, Fault> {
     let Some(start) = &text.start else { return Ok(Starts { scan: true, ..Starts::default() }) };
     let has = |kind| start.get_ref().contains(&kind);
     if start.get_ref().is_empty() {
@@ -283,6 +285,10 @@ fn starts(text: &LaneText) -> Result<Starts, Fault> {
         return Err(Fault::wrong(start.span().start, "nothing starts this lane", remedy));
     }
     let [scan, button, presence] = [StartText::Scan, StartText::Button, StartText::Presence].map(has);
+    if !scan && !button && !board.is_pluggable() {
+        let what = format!("the board `{board}` is never plugged in, so nothing starts this lane");
+        return Err(Fault::wrong(start.span().start, what, "name scan or button"));
+    }
     Ok(Starts { scan, button, presence })
 }
 

@@ -110,7 +110,7 @@ name = "near"
 mqtt = "mqtt://localhost"
 [[lane]]
 name = "1"
-board = "mock"
+board = "usb:1-2.3"
 plans = ["b.toml"]
 start = ["presence"]
 [[on-fail]]
@@ -230,6 +230,21 @@ const WRONG: &[(&str, &str, &str)] = &[
         "[\"scan\", \"button\"]",
         "[]",
         "station.toml:21: nothing starts this lane; name scan, button or presence",
+    ),
+    (
+        "\"mock,serial=1\"\n",
+        "\"mock,serial=1\"\nstart = [\"presence\"]\n",
+        "station.toml:25: the board `mock,serial=1` is never plugged in, so nothing starts this lane; name scan or button",
+    ),
+    (
+        "\"mock,serial=1\"\n",
+        "\"tcp:bench:3001\"\nstart = [\"presence\"]\n",
+        "station.toml:25: the board `tcp:bench:3001` is never plugged in",
+    ),
+    (
+        "\"mock,serial=1\"\n",
+        "\"labgrid:rack-3\"\nstart = [\"presence\"]\n",
+        "station.toml:25: the board `labgrid:rack-3` is never plugged in",
     ),
     ("{lane}", "{line}", "station.toml:28: nothing is known that is called {line}; write one of {lane}"),
     ("./print", "./brint", "there is no program"),

@@ -343,10 +343,12 @@ fn what_comes_long_after_the_beat_that_its_page_heard_is_not_done() {
 
 /// A station whose lane has a serial number, and is started by `start`.
 fn started_by(start: &str) -> (Station, Serving) {
-    let board = "board = \"mock,serial=1\"";
-    let started = format!("{board}\nstart = [\"{start}\"]");
-    let station = Station::private(1).where_instead("station.toml", board, &started);
+    let station = Station::private(1);
+    let port = station.path("port");
+    let started = format!("board = \"serial:{}\"\nstart = [\"{start}\"]", port.display());
+    let station = station.where_instead("station.toml", "board = \"mock,serial=1\"", &started);
     let serving = station.serve();
+    fs::write(&port, "").unwrap();
     seen(&serving, "lane ready");
     serving.here().post("/scan", &[("text", SERIALS[0])]).send();
     (station, serving)
