@@ -96,7 +96,7 @@ pub(super) fn load_without_lanes(path: &Path) -> Result<Settings, Failure> {
 }
 
 /// The last signal received, which ends what is under way.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Signal(Arc<AtomicUsize>);
 
 impl Signal {
@@ -110,13 +110,16 @@ impl Signal {
         Exit::stopped_by(self.0.load(Ordering::Relaxed))
     }
 
-    /// Waits until somebody wants the program to end, and calls `meanwhile` ten times a second.
-    pub(super) fn wait(&self, mut meanwhile: impl FnMut()) -> StoppedBy {
+    /// Waits until somebody wants the program to end, and calls `meanwhile` ten times a second, whose error ends the wait, too.
+    ///
+    /// # Errors
+    /// That of `meanwhile`.
+    pub(super) fn wait<E>(&self, mut meanwhile: impl FnMut() -> Result<(), E>) -> Result<StoppedBy, E> {
         loop {
             if let Some(by) = self.by() {
-                return by;
+                return Ok(by);
             }
-            meanwhile();
+            meanwhile()?;
             thread::sleep(LOOK);
         }
     }

@@ -5,9 +5,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use halfrow::verdict::StoppedBy;
 
 use super::Failure;
-use super::beginning::{Disk, Ready, SettingsFile, outbox};
+use super::beginning::{Disk, Ready, SettingsFile, Signal, outbox};
+use super::lanes::EngineEnded;
 use super::notify::Notify;
 use super::publish::fetch_at_start;
 use crate::console;
@@ -72,16 +74,52 @@ pub(super) fn serve(
     begin(&engine).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
     notify.ready();
-    let mut told = Instant::now();
-    let by = signal.wait(|| {
-        if told.elapsed() >= TELL && engine.is_well() {
-            told = Instant::now();
-            notify.works();
-        }
-    });
+    let by = at_work(&signal, &engine, &notify).map_err(Failure::error)?;
     engine.close(Some(by));
     outbox.close();
     server.close();
     engine.store().with(Store::fold_log);
     Ok(halfrow::Cause::Stopped(by).into())
+}
+
+/// Waits until a signal comes, and tells systemd meanwhile that the engine works.
+fn at_work(signal: &Signal, engine: &Engine, notify: &Notify) -> Result<StoppedBy, EngineEnded> {
+    let mut told = Instant::now();
+    signal.wait(|| {
+        if engine.has_ended() {
+            return Err(EngineEnded);
+        }
+        if told.elapsed() >= TELL && engine.is_well() {
+            told = Instant::now();
+            notify.works();
+        }
+        Ok(())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::sync::mpsc;
+    use std::thread;
+
+    use super::*;
+    use crate::store::Folder;
+
+    /// Without systemd's watchdog, the program's end is all that can be noticed from outside.
+    #[test]
+    fn a_station_whose_engine_has_ended_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("station.toml");
+        let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
+        fs::write(&path, format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{lane}")).unwrap();
+        fs::write(folder.path().join("plan.toml"), include_str!("../../tests/station/quick.toml")).unwrap();
+        let settings = Settings::load(&path).unwrap();
+        let store = Store::open(&Folder::new(&settings.data)).unwrap();
+        let engine = Engine::start(settings, store, "lane".into()).unwrap();
+        engine.close(None);
+        let (told, ended) = mpsc::channel();
+        thread::spawn(move || told.send(at_work(&Signal::default(), &engine, &Notify::default()).is_err()));
+        assert_eq!(ended.recv_timeout(Duration::from_secs(60)), Ok(true));
+    }
 }
