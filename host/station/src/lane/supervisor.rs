@@ -57,6 +57,8 @@ pub struct Patience {
 pub struct LaneReport {
     /// Every try of a step that came to an end.
     pub steps: Vec<StepRecord>,
+    /// How long it took from the first step's start to the last step's end; none if no step came to an end.
+    pub took: Option<Duration>,
     /// How it ended.
     pub end: End,
 }
@@ -96,15 +98,16 @@ pub fn supervise(
     patience: Patience,
     attendant: &mut dyn Attendant,
 ) -> LaneReport {
-    let mut steps = Vec::new();
+    let (mut steps, mut took) = (Vec::new(), None);
     let end = match Lane::start(program, job, spool) {
         Ok(mut lane) => {
             let end = lane.attended(patience, attendant, &mut steps);
+            took = lane.took;
             lane.end(end)
         }
         Err(error) => End::Died(Saying::LaneNotStarted { error: error.to_string() }.into()),
     };
-    LaneReport { steps, end }
+    LaneReport { steps, took, end }
 }
 
 struct Lane {
@@ -117,6 +120,9 @@ struct Lane {
     room: u64,
     /// Whether the lane has said that it is of this program.
     is_own: bool,
+    /// When its first step began, and how long it took until the last step's end.
+    begun: Option<Instant>,
+    took: Option<Duration>,
 }
 
 impl Lane {
@@ -136,7 +142,9 @@ impl Lane {
             .spawn()?;
         let (sender, lines) = mpsc::sync_channel(MOST_WAITING);
         let (stdout, stdin) = (child.stdout.take(), child.stdin.take());
-        let mut lane = Self { orders: None, child, lines, events, room: FILE_MIB << 20, is_own: false };
+        let room = FILE_MIB << 20;
+        let mut lane =
+            Self { orders: None, child, lines, events, room, is_own: false, begun: None, took: None };
         match hear(stdout, sender).and_then(|()| lane.brief(stdin, job, spool)) {
             Ok(()) => Ok(lane),
             Err(error) => {
@@ -232,7 +240,11 @@ impl Lane {
     fn answer(&mut self, message: &Message, attendant: &mut dyn Attendant, steps: &mut Vec<StepRecord>) {
         attendant.hear(message);
         match message {
-            Message::Ended { step } => steps.push(StepRecord::clone(step)),
+            Message::Step { .. } => _ = self.begun.get_or_insert_with(Instant::now),
+            Message::Ended { step } => {
+                self.took = self.begun.map(|begun| begun.elapsed());
+                steps.push(StepRecord::clone(step));
+            }
             Message::Identified { board } => self.tell(&Control::Device(attendant.rule(board))),
             _ => {}
         }

@@ -36,7 +36,7 @@ pub(super) fn supervised(
             lent.held.into_inner().give_back();
             (heard, lost.map(|lost| Said::of(&lost)))
         }
-        Err(end) => (LaneReport { steps: Vec::new(), end }, None),
+        Err(end) => (LaneReport { steps: Vec::new(), took: None, end }, None),
     }
 }
 

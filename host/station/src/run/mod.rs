@@ -281,10 +281,13 @@ fn record(
     (heard, device): (LaneReport, DeviceSeen),
     took: Duration,
 ) -> Record {
-    let LaneReport { mut steps, end } = heard;
+    let LaneReport { mut steps, took: stepped, end } = heard;
     let ended_ms = clock::now_ms();
     let seconds = took.as_secs_f64();
-    let measurements = judged(Maker::Run, &[("run.seconds", Some(seconds))], &selected.limits);
+    let stepped = [("run.seconds", stepped.map(|took| took.as_secs_f64()))];
+    // Without any step there was nothing to measure, and how the lane ended says more.
+    let measurements =
+        if steps.is_empty() { Vec::new() } else { judged(Maker::Run, &stepped, &selected.limits) };
     let conclusion = Conclusion::of(selected.steps.len() as u32, &steps, &measurements, of_lane(end))
         .note_unchecked_identity(device);
     let suspects = if conclusion.disbelieves_steps() { Vec::new() } else { last_suspects(&steps) };

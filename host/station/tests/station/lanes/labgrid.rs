@@ -5,6 +5,8 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
 
+use halfrow_station::record::Record;
+use halfrow_station::store::Folder;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
@@ -64,6 +66,24 @@ fn the_board_of_a_place_is_judged_where_labgrid_says_and_the_place_given_back() 
     assert_eq!(diary(&station), [FREE, HOLD, "given back", HOLD, "given back"]);
     assert_eq!(station.query("SELECT DISTINCT target FROM run"), ["labgrid:cam-1"]);
     station.assert_well();
+}
+
+/// The board may be somebody else's for long, and the run is judged by what was done with it.
+#[test]
+fn the_wait_for_a_place_does_not_count_as_time_of_the_run() {
+    let station = station(r#"{"held": {"host": "127.0.0.1", "port": 1, "speed": 9600}}"#, "");
+    let late = LENDER.replace("[ ! -s answer ]", "sleep 0.3\n[ ! -s answer ]");
+    fs::write(station.path("lender"), late).unwrap();
+    let mut running = station.start();
+    running.test("1", SERIALS[0]);
+    running.state("1", "ERROR");
+    assert_eq!(running.end().0, Some(0));
+    let hash = station.query("SELECT record_sha256 FROM run").remove(0);
+    let bytes = Folder::new(&station.path("data")).blobs().get(&hash).unwrap();
+    let record = Record::parse(&bytes).unwrap();
+    let measured = record.measurements.iter().find(|one| one.name == "run.seconds").unwrap();
+    let (run, whole) = (measured.value.unwrap(), record.seconds.unwrap());
+    assert!(run >= 0.0 && whole - run >= 0.3, "{run} s of {whole} s");
 }
 
 /// What the script answers, and the code and the beginning of the sentence that are shown then.
