@@ -161,8 +161,8 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let spool = folder.spool(&head.id);
     // Whoever finds the run open finds its claim, too.
     recovered::note_claim(&spool, head.job.as_ref());
-    let entered = store.with(|store| store.begin(head, &planned));
-    let head = entered.inspect_err(|_| recovered::drop_claim(&spool)).map_err(not_begun)?;
+    let entered = store.with(|store| store.begin(head.clone(), &planned));
+    let head = entered.map_err(|error| recovered::not_entered(store, &head, error, watch))?;
     watch.hear(Stage::Begun(&head));
     let begun = Instant::now();
     let job = job(&head, order, ids::seed(id), &spool);

@@ -18,7 +18,7 @@ use crate::record::{
 use crate::said::Saying;
 use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stored};
 
-use super::{RunError, Saved, save};
+use super::{RunError, Saved, Stage, Watch, save};
 
 /// The claim of the job that a run belongs to, in the run's spool: the row of an open run does not have it.
 const CLAIM: &str = "claim.json";
@@ -39,8 +39,26 @@ pub(super) fn note_claim(spool: &Path, claim: Option<&JobClaim>) {
     }
 }
 
+/// What becomes of a run that the store did not enter. If its row is there all the same, because the folder was away just after it
+/// was written, the run is settled like one whose result could not be saved.
+pub(super) fn not_entered(
+    store: &SharedStore,
+    head: &RunHead,
+    error: StoreError,
+    watch: &mut dyn Watch,
+) -> RunError {
+    let source = Box::new(error);
+    let (open, spool) = store.with(|store| (store.open_runs(), store.folder().spool(&head.id)));
+    if open.is_ok_and(|open| open.iter().any(|open| open.run.id == head.id)) {
+        watch.hear(Stage::Begun(head));
+        return RunError::Unsaved { run: head.id.clone(), source };
+    }
+    drop_claim(&spool);
+    RunError::NotBegun(source)
+}
+
 /// Removes the claim of a run that was not begun.
-pub(super) fn drop_claim(spool: &Path) {
+fn drop_claim(spool: &Path) {
     // What is left of it belongs to no run, and is never read.
     let _ = fs::remove_file(spool.join(CLAIM)).and_then(|()| fs::remove_dir(spool));
 }

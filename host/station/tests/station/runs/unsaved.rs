@@ -108,6 +108,29 @@ fn failing(station: &Station, board: &str, name: &str, number: usize) -> (Did, O
     (output.into(), trace.lines().find(|line| line.contains("(INJECTED)")).map(str::to_owned))
 }
 
+/// Nobody could test the unit again before the next start if the run were taken for one that was not begun.
+#[test]
+fn a_run_that_was_entered_just_before_the_folder_went_away_is_one_that_could_not_be_saved() {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock");
+    // No call has this number.
+    failing(&station, "mock", "statx", 65_535);
+    let trace = std::fs::read_to_string(station.path("failed")).unwrap();
+    let is_look = |line: &str| line.contains("/data/blobs\"");
+    let looks: Vec<_> = (1..).zip(trace.lines()).filter(|(_, line)| is_look(line)).collect();
+    let mut seen = 0;
+    for (number, _) in looks {
+        let (did, call) = failing(&station, "mock", "statx", number);
+        let open = station.query("SELECT id FROM run WHERE state = 'open'");
+        if let [run] = &open[..] {
+            assert!(did.said.contains("UNSAVED CAT00002: keep this board apart"), "{call:?}: {did:?}");
+            seen += usize::from(!station.data().join("spool").join(run).exists());
+        }
+        assert_eq!(station.run("CAT00003", "mock").code, Some(0), "{call:?}: {did:?}");
+    }
+    assert!(seen > 0, "no run was entered and then not begun: {trace}");
+}
+
 /// A disk reports a lost write once, and accepts what comes later. Three calls bring evidence to the disk, for the file, its
 /// name, and the name of its folder; each is checked when it alone fails.
 #[test]
