@@ -88,15 +88,21 @@ enum Message {
     Lost { said: String },
 }
 
+/// The kind of board that `target` means any one of, if it is a pool.
+///
+/// # Errors
+/// [`PoolError::NoKind`]
+pub(crate) fn kind(target: &Target) -> Result<Option<&str>, PoolError> {
+    let kind = target.address.as_deref().filter(|kind| !kind.is_empty());
+    if target.kind == POOL { kind.ok_or(PoolError::NoKind).map(Some) } else { Ok(None) }
+}
+
 /// The board that `target` means: itself, or one leased from the pool of its kind. The first call waits for that.
 ///
 /// # Errors
 /// [`PoolError`]
 pub(crate) fn resolved(target: Target) -> Result<Target, PoolError> {
-    if target.kind != POOL {
-        return Ok(target);
-    }
-    let kind = target.address.filter(|kind| !kind.is_empty()).ok_or(PoolError::NoKind)?;
+    let Some(kind) = kind(&target)?.map(str::to_owned) else { return Ok(target) };
     let mut lent = LENT.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(lent) = lent.as_ref().filter(|lent| lent.kind == kind) {
         return Ok(lent.target.clone());

@@ -54,6 +54,31 @@ fn a_board_of_a_kind_is_waited_for_and_given_back() {
 }
 
 #[test]
+fn a_call_that_is_wrong_or_only_lists_waits_for_no_board() {
+    let folder = leased_by(&LEASES.replace("BOARD", "mock"));
+    let call = |command: &str, more: &[&str]| {
+        let mut call = Command::new(folder.path().join("halfrow"));
+        call.current_dir(folder.path()).args([command, "--quiet", "--board", "pool:ulx3s"]).args(more);
+        finish(&mut call)
+    };
+    for (command, wrong) in [
+        ("verify", &["--frame", "nowhere.pgm"][..]),
+        ("verify", &["--lens", "nowhere.yml"]),
+        ("verify", &["--reconnect=-1"]),
+        ("verify", &["--timeout", "0"]),
+        ("verify", &["--report", "lease"]),
+        ("soak", &["--frames", "3", "--reconnect=-1"]),
+        ("soak", &["--frames", "3", "--report", "lease"]),
+    ] {
+        let ended = call(command, wrong);
+        assert_eq!(ended.code, Some(2), "{command} {wrong:?}: {ended:?}");
+    }
+    let listed = call("verify", &["--list"]);
+    assert!(listed.code == Some(0) && listed.stdout.contains("FIFO, 5 MB/s"), "{listed:?}");
+    assert!(!folder.path().join("called").exists());
+}
+
+#[test]
 fn a_run_that_is_killed_gives_its_board_back_and_one_whose_board_is_lost_ends() {
     let folder = leased_by(&LEASES.replace("BOARD", crate::running::SLOW));
     let mut running = Running::start(&mut verify(&folder, "pool:ulx3s"));

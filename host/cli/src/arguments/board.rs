@@ -14,7 +14,7 @@ use super::judging::time_limit;
 use crate::call_error::CallError;
 use crate::commands::Failure;
 use crate::exit::Exit;
-use crate::pool::{self, PoolError};
+use crate::pool::{self, POOL};
 use crate::settings::Settings;
 use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
@@ -75,6 +75,33 @@ pub(crate) fn refuse_recording(target: &Target) -> Result<(), Failure> {
     }
 }
 
+/// Checks that `target` is written correctly. Its device need not exist, and a pool is not asked.
+pub(crate) fn check(target: &Target) -> Result<(), Failure> {
+    if target.kind == POOL { Ok(()) } else { link::check(target).map_err(wrong) }
+}
+
+/// Refuses a fault of the mock board `target` that has no effect in a run of `plan`.
+pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
+    let fault = link::fault(target).map_err(wrong)?;
+    let judged = plan
+        .schedule(&Build::full(plan.tables.geometry().width()))
+        .into_iter()
+        .flat_map(|segment| segment.frames);
+    let frames = judged.filter(|frame| frame.generation == JUDGED).count();
+    let tables = &plan.tables;
+    let grid = tables.shape().map(|_| tables.entries().len());
+    let (width, height) = (tables.geometry().width(), tables.geometry().height());
+    let at_speed = plan.at_speed != AtSpeed::Off;
+    let streamed = Streamed { width, height, grid, frames, at_speed };
+    match fault.and_then(|fault| fault.without_effect(&streamed)) {
+        None => Ok(()),
+        Some(why) => Err(wrong(Failure::call(CallError::FaultWithoutEffect {
+            target: target.to_string(),
+            reason: why.to_string(),
+        }))),
+    }
+}
+
 /// `failure`, attributed to the value of `--board`.
 pub(crate) fn wrong(failure: impl Into<Failure>) -> Failure {
     failure.into().in_value_of("--board")
@@ -99,44 +126,21 @@ impl BoardArguments {
         Ok(link::recording_file(&self.named(settings)?).map(Path::to_owned))
     }
 
-    /// The target that is named: a board or a pool; by default the mock.
+    /// The target that is named: a board, or a pool of some kind; by default the mock.
     pub(crate) fn named(&self, settings: &Settings) -> Result<Target, Failure> {
-        match (&self.board, &settings.board) {
-            (Some(target), _) => Ok(target.clone()),
-            (None, Some(text)) => text.parse().map_err(Failure::call).map_err(wrong),
-            (None, None) => Ok(Target::mock()),
-        }
+        let target = match (&self.board, &settings.board) {
+            (Some(target), _) => target.clone(),
+            (None, Some(text)) => text.parse().map_err(Failure::call).map_err(wrong)?,
+            (None, None) => Target::mock(),
+        };
+        pool::kind(&target).map_err(Failure::call).map_err(wrong)?;
+        Ok(target)
     }
 
-    /// The board that is named, or the one that was leased from the pool that is named.
+    /// The board that is named, or the one that was leased from the pool that is named. The first call waits for that, so
+    /// everything else that the program is called with must have been checked.
     pub(crate) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
-        pool::resolved(self.named(settings)?).map_err(|error| match error {
-            PoolError::NoKind => wrong(Failure::call(error)),
-            error => Failure::error(error),
-        })
-    }
-
-    /// Refuses a fault of the mock board that has no effect in a run of `plan`.
-    pub(crate) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
-        let target = self.target(settings)?;
-        let fault = link::fault(&target).map_err(wrong)?;
-        let judged = plan
-            .schedule(&Build::full(plan.tables.geometry().width()))
-            .into_iter()
-            .flat_map(|segment| segment.frames);
-        let frames = judged.filter(|frame| frame.generation == JUDGED).count();
-        let tables = &plan.tables;
-        let grid = tables.shape().map(|_| tables.entries().len());
-        let (width, height) = (tables.geometry().width(), tables.geometry().height());
-        let at_speed = plan.at_speed != AtSpeed::Off;
-        let streamed = Streamed { width, height, grid, frames, at_speed };
-        match fault.and_then(|fault| fault.without_effect(&streamed)) {
-            None => Ok(()),
-            Some(why) => Err(wrong(Failure::call(CallError::FaultWithoutEffect {
-                target: target.to_string(),
-                reason: why.to_string(),
-            }))),
-        }
+        pool::resolved(self.named(settings)?).map_err(Failure::error)
     }
 
     /// The link to the board that is named, which must not be a recording. The default is the mock; no board is ever guessed.
@@ -158,9 +162,9 @@ impl BoardArguments {
         }
     }
 
-    /// The recording, if the target is one.
+    /// The recording, if the target is one. A pool lends none.
     pub(crate) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
-        link::recording(&self.target(settings)?).map_err(wrong)
+        link::recording(&self.named(settings)?).map_err(wrong)
     }
 
     pub(crate) fn open_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {

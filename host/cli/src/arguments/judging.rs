@@ -7,19 +7,18 @@ use std::time::Duration;
 use clap::Args;
 use halfrow_program::number::{any, whole_number};
 
-use super::board::BoardArguments;
+use super::board::{BoardArguments, check_fault};
 use super::given::{Given, yes_or_no};
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
 use crate::commands::{Context, Failure, codes};
 use crate::exit::Exit;
 use crate::files::prepare_files;
-use crate::pool::PoolError;
 use crate::settings::Settings;
 use crate::{console, flags, progress, text};
 use halfrow::call::{self, Files, FilesError, Input};
 use halfrow::files::check_regular;
-use halfrow::link::{Candidate, RecordingFile};
+use halfrow::link::{Candidate, Recording, RecordingFile};
 use halfrow::optics::Chosen;
 use halfrow::report::{self, ReportFolder};
 use halfrow::result::FileHash;
@@ -64,11 +63,11 @@ pub(crate) struct RunArguments {
 }
 
 /// Where a run writes. The places are taken.
-pub(crate) struct Outputs {
+struct Outputs {
     /// The report's folder.
-    pub(crate) report: Option<ReportFolder>,
+    report: Option<ReportFolder>,
     /// The recording's file.
-    pub(crate) recording: Option<RecordingFile>,
+    recording: Option<RecordingFile>,
 }
 
 impl RunArguments {
@@ -130,7 +129,7 @@ impl RunArguments {
         seconds("--reconnect", named.or(settings))
     }
 
-    /// The options of a run that judges with what was read from `inputs`.
+    /// The options of a run that judges with what was read from `inputs`, apart from what ends it early.
     pub(crate) fn options(&self, inputs: Vec<Input>, settings: &Settings) -> Result<RunOptions, Failure> {
         let provenance = Provenance {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
@@ -140,7 +139,6 @@ impl RunArguments {
         };
         Ok(RunOptions {
             timeout: self.board.timeout(settings)?,
-            stop: self.board.stop(settings)?,
             retry_limit: self.board.retry_limit(settings),
             reconnect: self.patience(settings.reconnect, PATIENCE)?,
             take_over: self.board.take_over,
@@ -155,60 +153,75 @@ impl RunArguments {
         self.require_hardware.or(settings.require_hardware).unwrap_or(false)
     }
 
+    fn overwrites(&self, settings: &Settings) -> bool {
+        self.overwrite.or(settings.overwrite).unwrap_or(false)
+    }
+
     fn report_path<'a>(&'a self, settings: &'a Settings) -> Option<&'a Path> {
         self.report.as_deref().or(settings.report.as_deref())
     }
 
-    /// Checks everything that the run reads, including `inputs`, and writes, and takes the places that it writes to.
-    pub(crate) fn outputs(
+    /// Judges by `plan` the board that is named, or the one in `recording`, and records the run to `record`. The plan was made
+    /// from the files `inputs`.
+    ///
+    /// A pool is asked for a board last, so that no wrong call waits for one or takes one from others.
+    pub(crate) fn judge(
+        &self,
+        (plan, options): (&Plan, RunOptions),
+        recording: Option<Recording>,
+        inputs: Vec<PathBuf>,
+        record: Option<&Path>,
+        context: &Context,
+    ) -> Result<Exit, Failure> {
+        let settings = &context.settings;
+        self.check_files(inputs, record, context)?;
+        let leased = self.board.target(settings);
+        // Not before: while the call waits for a board, there is no run whose time passes or that a signal must end in order.
+        let options = RunOptions { stop: self.board.stop(settings)?, ..options };
+        if let Ok(target) = &leased {
+            check_fault(target, plan)?;
+        }
+        let outputs = self.outputs(record, context)?;
+        let (target, candidate) = match leased {
+            Ok(target) => (target, self.board.candidate_of(settings, recording)),
+            Err(failure) => (self.board.named(settings)?, Err(failure)),
+        };
+        judge(candidate, (plan, &options), &target, outputs, context)
+    }
+
+    /// Checks everything that the run reads, including `inputs`, and writes.
+    fn check_files(
         &self,
         inputs: Vec<PathBuf>,
         record: Option<&Path>,
         context: &Context,
-    ) -> Result<Outputs, Failure> {
+    ) -> Result<(), Failure> {
         let settings = &context.settings;
-        let overwrite = self.overwrite.or(settings.overwrite).unwrap_or(false);
-        let report = self.report_path(settings);
         prepare_files(
-            &Files::new(overwrite)
+            &Files::new(self.overwrites(settings))
                 .reads(&context.settings_file)
                 .reads(inputs)
                 .reads_kernel(self.kernel(settings))
                 .reads(self.board.replayed(settings)?)
                 .writes_claimed("--record", record)
-                .writes_report("--report", report),
+                .writes_report("--report", self.report_path(settings)),
         )
         .map_err(|error| match (error.option(), &error) {
             (Some(option), _) => Failure::call(error).in_value_of(option),
             (None, FilesError::Report(_)) => Failure::call(error).in_value_of("--report"),
             (None, _) => Failure::call(error),
-        })?;
+        })
+    }
+
+    /// Takes the places that the run writes to.
+    fn outputs(&self, record: Option<&Path>, context: &Context) -> Result<Outputs, Failure> {
+        let settings = &context.settings;
+        let overwrite = self.overwrites(settings);
+        let report = self.report_path(settings);
         let report = report.map(|path| ReportFolder::prepare(path, overwrite)).transpose();
         let recording = record.map(|path| RecordingFile::prepare(path, overwrite)).transpose();
         let report = report.map_err(|error| Failure::call(error).in_value_of("--report"))?;
         Ok(Outputs { report, recording: recording.map_err(Failure::call)? })
-    }
-
-    /// Writes the report of a run for which a pool had no board, and returns the failure. `free` returns the plan, options and
-    /// input files of the run.
-    pub(crate) fn without_board(
-        &self,
-        failure: Failure,
-        context: &Context,
-        free: impl FnOnce() -> Result<(Plan, RunOptions, Vec<PathBuf>), Failure>,
-    ) -> Failure {
-        if failure.exit == Exit::Usage || !failure.error.is::<PoolError>() {
-            return failure;
-        }
-        let begun = free().and_then(|(plan, options, files)| {
-            let report = self.outputs(files, None, context)?.report;
-            Ok((plan, options, self.board.named(&context.settings)?, report))
-        });
-        match begun {
-            Ok((plan, options, target, report)) => not_begun(failure, (&plan, &options), &target, report),
-            // With a board, the call would have failed by this error. Without one, the pool's failure counts.
-            Err(_) => failure,
-        }
     }
 }
 
@@ -223,7 +236,7 @@ pub(crate) fn time_limit(option: &'static str, seconds: Option<f64>) -> Result<O
 }
 
 /// Judges the board of `candidate`, which `target` names, writes the report, if there is a folder for it, and prints it.
-pub(crate) fn judge(
+fn judge(
     candidate: Result<Candidate, Failure>,
     (plan, options): (&Plan, &RunOptions),
     target: &Target,

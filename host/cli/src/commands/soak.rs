@@ -8,7 +8,7 @@ use halfrow_program::number::{counted, number};
 use super::{Context, Failure};
 use crate::arguments::board::refuse_recording;
 use crate::arguments::given::Given;
-use crate::arguments::judging::{RunArguments, judge};
+use crate::arguments::judging::RunArguments;
 use crate::exit::Exit;
 use crate::settings::Settings;
 use halfrow::frames::Builtin;
@@ -52,21 +52,10 @@ impl Length {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let run = &arguments.run;
-    let files = run.input_files(settings);
+    refuse_recording(&run.board.named(settings)?)?;
     run.check_inputs(settings)?;
-    // While the call waits for a board of a pool, there is no run yet that a signal would have to end in order.
-    let target = match run.board.target(settings) {
-        Ok(target) => target,
-        Err(failure) => {
-            let free = || arguments.plan(settings).map(|(plan, options)| (plan, options, files.clone()));
-            return Err(run.without_board(failure, context, free));
-        }
-    };
-    refuse_recording(&target)?;
     let (plan, options) = arguments.plan(settings)?;
-    run.board.check_fault(settings, &plan)?;
-    let outputs = run.outputs(files, None, context)?;
-    judge(run.board.candidate(settings), (&plan, &options), &target, outputs, context)
+    run.judge((&plan, options), None, run.input_files(settings), None, context)
 }
 
 impl Arguments {

@@ -13,13 +13,13 @@ use super::{Context, Failure};
 use crate::arguments::board::{self, MOCK, Replays};
 use crate::arguments::given::{Decider, Given};
 use crate::arguments::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
-use crate::arguments::judging::{RunArguments, judge, seconds};
+use crate::arguments::judging::{RunArguments, seconds};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use halfrow::call::{self, Input};
 use halfrow::files::check_regular;
 use halfrow::frames::Builtin;
-use halfrow::link::{self, Recording};
+use halfrow::link::Recording;
 use halfrow::optics::Chosen;
 use halfrow::run::{FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
 
@@ -69,25 +69,18 @@ fn repeats() -> impl TypedValueParser<Value = u32> {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
-    let board = &arguments.run.board;
-    let recording = match board.recording(settings) {
-        Ok(recording) => recording,
-        Err(failure) if arguments.list => return Err(failure),
-        Err(failure) => {
-            return Err(arguments.run.without_board(failure, context, || arguments.free(context)));
-        }
-    };
+    let recording = arguments.run.board.recording(settings)?;
     let frames = arguments.frames(settings)?;
     let files = arguments.input_files(&frames, settings);
     let (plan, options) = arguments.planned(recording.as_ref(), frames, context)?;
-    let target = board.target(settings)?;
     if arguments.list {
         // The cost of a run can be computed without the device.
-        link::check(&target).map_err(board::wrong)?;
+        let target = arguments.run.board.named(settings)?;
+        board::check(&target)?;
+        board::check_fault(&target, &plan)?;
         return listing::list(&plan, &target, context.json);
     }
-    let outputs = arguments.run.outputs(files, arguments.record.as_deref(), context)?;
-    judge(board.candidate_of(settings, recording), (&plan, &options), &target, outputs, context)
+    arguments.run.judge((&plan, options), recording, files, arguments.record.as_deref(), context)
 }
 
 fn wrong_frame(error: impl Into<anyhow::Error>) -> Failure {
@@ -115,21 +108,12 @@ impl Arguments {
                 let (plan, mut options) = RecordedRun::restore(recording)?;
                 options.provenance.operator = self.run.operator();
                 let require_hardware = self.run.requires_hardware(settings);
-                (plan, RunOptions { require_hardware, stop: self.run.board.stop(settings)?, ..options })
+                (plan, RunOptions { require_hardware, ..options })
             }
             None => self.plan(frames, context)?,
         };
         plan.check_length().map_err(Failure::call)?;
-        self.run.board.check_fault(settings, &plan)?;
         Ok((plan, options))
-    }
-
-    /// The plan and options of the run whatever the board, and the files that they are read from.
-    fn free(&self, context: &Context) -> Result<(Plan, RunOptions, Vec<PathBuf>), Failure> {
-        let frames = self.frames(&context.settings)?;
-        let files = self.input_files(&frames, &context.settings);
-        let (plan, options) = self.plan(frames, context)?;
-        Ok((plan, options, files))
     }
 
     /// The plan and options of the run, from the command's options.
