@@ -3,13 +3,14 @@
 use std::io::{Cursor, Seek, Write};
 
 use halfrow_model::{BitDepth, Frame};
-use tiff::decoder::{Decoder, DecodingResult};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::encoder::colortype::{ColorType as ColourType, Gray8, Gray16};
 use tiff::encoder::{TiffEncoder, TiffValue};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
 use super::mosaic::Picture;
+use super::size::MAX_FILE_BYTES;
 use super::{DecodeError, Orientation, ReadOptions, tiff_directory};
 
 /// The first bytes of a TIFF, of either byte order.
@@ -80,27 +81,43 @@ where
 }
 
 fn read(bytes: &[u8]) -> Result<Picture, DecodeError> {
-    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(DecodeError::Tiff)?;
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(refused)?.with_limits(limits());
     if decoder.more_images() {
         return Err(DecodeError::Unsupported {
             what: "a TIFF of several pictures".to_owned(),
             remedy: "save each as a file of its own",
         });
     }
-    let (width, _) = decoder.dimensions().map_err(DecodeError::Tiff)?;
-    let channels = match decoder.colortype().map_err(DecodeError::Tiff)? {
+    let (width, _) = decoder.dimensions().map_err(refused)?;
+    let channels = match decoder.colortype().map_err(refused)? {
         ColorType::Gray(_) => 1,
         ColorType::RGB(_) => 3,
         ColorType::RGBA(_) => 4,
         other => return Err(unsupported(&format!("a TIFF of {other:?}"))),
     };
-    let (full, samples) = match decoder.read_image().map_err(DecodeError::Tiff)? {
+    let (full, samples) = match decoder.read_image().map_err(refused)? {
         DecodingResult::U8(samples) => (u8::MAX.into(), samples.into_iter().map(u16::from).collect()),
         DecodingResult::U16(samples) => (u16::MAX, samples),
         _ => return Err(unsupported("a TIFF of signed or floating-point samples")),
     };
     let (width, orientation) = (usize::try_from(width).unwrap_or(usize::MAX), Orientation::default());
     Ok(Picture { width, channels, full, samples, orientation })
+}
+
+/// Room for the largest picture that the directory's check lets pass, even in a single strip.
+fn limits() -> Limits {
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = MAX_FILE_BYTES;
+    limits.intermediate_buffer_size = MAX_FILE_BYTES;
+    limits
+}
+
+/// The decoder's `error` as one of ours.
+fn refused(error: TiffError) -> DecodeError {
+    match error {
+        TiffError::UnsupportedError(_) | TiffError::LimitsExceeded => unsupported("this kind of TIFF"),
+        other => DecodeError::Tiff(other),
+    }
 }
 
 fn unsupported(what: &str) -> DecodeError {

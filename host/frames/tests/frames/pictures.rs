@@ -205,6 +205,33 @@ fn oriented(orientation: u16, channels: u16, bits: u16) -> Vec<u8> {
     [b"II*\0\x08\0\0\0\x0a\0", &entries[..], &[0; 4], &strip].concat()
 }
 
+/// Announced, but not there, so that reading stops before it takes time: a photograph of 24 megapixels in one strip, and the
+/// largest picture.
+#[test]
+fn no_size_that_is_read_at_all_is_beyond_the_decoder() {
+    for (width, height, channels) in [(6000_u16, 4000_u16, 3), (8192, 8192, 4)] {
+        let mut file = oriented(1, channels, 16);
+        let length = u32::from(width) * u32::from(height) * u32::from(channels) * 2;
+        for (entry, value) in [(0, width.into()), (1, height.into()), (8, height.into()), (9, length)] {
+            let place = 8 + 2 + entry * 12 + 8;
+            file[place..place + 4].copy_from_slice(&u32::to_le_bytes(value));
+        }
+        file.resize(200_000, 0);
+        let error = decode(&file, &options(BitDepth::Twelve)).unwrap_err().to_string();
+        assert_eq!(error, "the TIFF is damaged: it breaks off; copy or export it again");
+    }
+}
+
+/// With a predictor for numbers that are no whole ones in the place of the orientation.
+#[test]
+fn a_kind_of_tiff_that_the_decoder_does_not_know_is_not_called_damaged() {
+    let mut file = oriented(3, 3, 8);
+    let entry = 8 + 2 + 6 * 12;
+    file[entry..entry + 2].copy_from_slice(&317_u16.to_le_bytes());
+    let error = decode(&file, &options(BitDepth::Eight)).unwrap_err().to_string();
+    assert_eq!(error, "this kind of TIFF cannot be used; save it as grey or RGB of 8 or 16 bits");
+}
+
 /// A PNG of the same samples, with its orientation in EXIF before the picture or after it (`behind`).
 fn oriented_png(orientation: u16, channels: usize, bits: u16, behind: bool) -> Vec<u8> {
     let entry = [42, 8, 0, 1, 274, 3, 1, 0, orientation, 0, 0, 0].map(u16::to_le_bytes).concat();
