@@ -103,6 +103,19 @@ fn the_list_of_a_recording_is_what_it_holds() {
     assert_eq!(named, [noise, noise, "builtin:bars", "builtin:grey", noise, noise]);
 }
 
+/// A list runs nothing. What a station always says does not prevent one.
+#[test]
+fn a_list_takes_no_option_of_a_run() {
+    let folder = Folder::new();
+    let list = small("verify", &["--list"]);
+    for option in [&["--report", "out"][..], &["--record", "run.rec"], &["--timeout", "60"]] {
+        let call: Vec<_> = list.iter().chain(option).copied().collect();
+        refused(&folder, &call, &format!("{} does nothing beside --list", option[0]));
+    }
+    assert_eq!(finish(folder.command(list).env("HALFROW_REPORT", "out")).code, Some(0));
+    assert!(!folder.path().join("out").exists());
+}
+
 /// `verify` and `correct` with `option`, and a table file for 128 x 16, 12 bits, centre at 63.5.
 fn beside_tables<'a>(option: &[&'a str]) -> [Vec<&'a str>; 2] {
     let call = |command: &[&'a str]| [command, &["--tables", "made.json"], option].concat();

@@ -27,6 +27,8 @@ pub(crate) enum Decider {
     Recording,
     /// A recording that is made.
     Record,
+    /// A list of what would be streamed, without a run.
+    List,
     /// A table file, whatever it holds.
     Tables,
     /// A time limit, by which the frames are chosen.
@@ -64,6 +66,20 @@ const LENS: [&str; 10] = [
     "centre_y",
 ];
 
+/// The options of a run that change nothing about what it streams.
+const RUN: [&str; 10] = [
+    "report",
+    "record",
+    "operator",
+    "overwrite",
+    "require_hardware",
+    "fail_fast",
+    "reconnect",
+    "timeout",
+    "retry_limit",
+    "take_over",
+];
+
 /// The options of a board.
 const BOARD: [&str; 4] = ["board", "timeout", "retry_limit", "take_over"];
 
@@ -73,6 +89,7 @@ impl Decider {
         let options: &[&[&str]] = match self {
             Self::Recording => &[call::BESIDE_RECORDING.options, &IN_TABLE_FILES, &LENS],
             Self::Record => &[call::WHILE_RECORDED.options],
+            Self::List => &[&RUN],
             Self::Tables => &[&LENS],
             Self::Within => &[call::WITHIN.options],
             Self::Model | Self::NoBoardItem => &[&BOARD],
@@ -90,6 +107,9 @@ impl Decider {
         match self {
             Self::Recording => call::BESIDE_RECORDING.reason,
             Self::Record => call::WHILE_RECORDED.reason,
+            Self::List => {
+                "does nothing beside --list, which lists what would be streamed and runs nothing; give one of them"
+            }
             Self::Tables => {
                 "cannot be used together with --tables, whose file holds the tables; give one of them"
             }
@@ -231,23 +251,36 @@ mod tests {
         check(&Cli::line());
     }
 
-    /// Every new option has to be assigned to one of the two lists.
+    /// Checks that every option of `verify` is void beside `decider` or does something there. A new one has to be assigned.
+    fn assigned(decider: Decider, do_something: &[&str]) {
+        let mut decided: Vec<&str> = decider.voids();
+        decided.extend(do_something);
+        decided.sort_unstable();
+        let mut options = options("verify");
+        options.sort_unstable();
+        assert_eq!(options, decided, "{decider:?}");
+    }
+
     #[test]
     fn every_option_of_verify_is_void_or_does_something_beside_a_recording() {
         let stand =
             ["board", "report", "record", "operator", "overwrite", "require_hardware", "list", "timeout"];
-        let mut decided: Vec<&str> = Decider::Recording.voids();
-        decided.extend(stand);
-        decided.sort_unstable();
-        let mut options = options("verify");
-        options.sort_unstable();
-        assert_eq!(options, decided);
+        assigned(Decider::Recording, &stand);
+    }
+
+    #[test]
+    fn every_option_of_verify_is_void_or_does_something_beside_a_list() {
+        // `within` is refused by clap already.
+        let of_the_plan =
+            ["frame", "repeat", "at_speed", "within", "tables", "kernel", "phase", "raw", "fit", "seed"];
+        assigned(Decider::List, &[&["board", "list"], &of_the_plan[..], &IN_TABLE_FILES, &LENS].concat());
     }
 
     #[test]
     fn options_that_are_void_exist() {
         for (decider, known) in [
             (Decider::Record, options("verify")),
+            (Decider::List, options("verify")),
             (Decider::Tables, options("verify")),
             (Decider::Model, options("correct")),
             (Decider::NoFrameFile, options("correct")),

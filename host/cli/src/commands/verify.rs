@@ -69,6 +69,9 @@ fn repeats() -> impl TypedValueParser<Value = u32> {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
+    if arguments.list {
+        arguments.given.refuse_void(Decider::List, &settings.keys()).map_err(Failure::call)?;
+    }
     let recording = arguments.run.board.recording(settings)?;
     let frames = arguments.frames(settings)?;
     let files = arguments.input_files(&frames, settings);
