@@ -31,9 +31,6 @@ pub(crate) enum CallError {
     /// The mock board's fault cannot show in this run.
     #[error("the fault of {target} would change nothing: {reason}")]
     FaultWithoutEffect { target: String, reason: String },
-    /// An option about tables was given, but the command makes a frame, which has none.
-    #[error("a frame has no tables; leave {option} out")]
-    RowsOfFrame { option: &'static str },
     /// An option says something else than the table file.
     #[error(
         "{option} contradicts --tables {}, which is for {width} x {height}, {bits} bits, centre at column {centre}; \

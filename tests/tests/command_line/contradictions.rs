@@ -198,6 +198,13 @@ fn the_model_takes_no_board() {
 }
 
 #[test]
+fn what_is_the_same_whatever_an_option_says_takes_none() {
+    let folder = Folder::new();
+    refused(&folder, &["tables", "--phase", "rggb", "-o", "x.json"], "--phase changes nothing about tables");
+    refused(&folder, &["lens", "--bits", "8"], "--bits changes nothing about a lens's figures");
+}
+
+#[test]
 fn a_layout_needs_a_file() {
     let folder = Folder::new();
     let sentence = "--raw is for frames that are files, and none is";

@@ -36,8 +36,8 @@ fn assert_near(found: &Value, expected: f64, tolerance: f64) {
 
 #[test]
 fn frames_have_no_row_factors() {
-    refused(&Folder::new(), &["frames", "-o", "frames", "--rows", "fitted"], "leave --rows out");
-    refused(&Folder::new(), &["frames", "-o", "frames", "--projection", "exact"], "leave --projection out");
+    refused(&Folder::new(), &["frames", "-o", "frames", "--rows", "fitted"], "--rows says how tables");
+    refused(&Folder::new(), &["frames", "-o", "frames", "--projection", "exact"], "--projection says how");
 }
 
 #[test]

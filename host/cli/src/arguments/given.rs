@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Args, Command, FromArgMatches};
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 
 use halfrow::call::{self, VoidOption};
 
@@ -39,6 +39,12 @@ pub(crate) enum Decider {
     NoFrameFile,
     /// Samples without a header.
     Headerless,
+    /// Frames that are written, without tables.
+    MadeFrames,
+    /// Tables that are written, which suit every phase.
+    MadeTables,
+    /// A lens whose figures are shown, which suit every sample.
+    ShownLens,
     /// Items of which none uses a board.
     NoBoardItem,
     /// Items of which none uses the paper's photographs.
@@ -84,6 +90,12 @@ const RUN: [&str; 10] = [
 const BOARD: [&str; 4] = ["board", "timeout", "retry_limit", "take_over"];
 
 impl Decider {
+    /// `argument`, left out of the help if it has no effect beside this in any call of its command.
+    pub(crate) fn hides(self, argument: Arg) -> Arg {
+        let is_void = self.voids().contains(&argument.get_id().as_str());
+        argument.hide(is_void)
+    }
+
     /// The ids of the options that have no effect beside it.
     fn voids(self) -> Vec<&'static str> {
         let options: &[&[&str]] = match self {
@@ -98,6 +110,9 @@ impl Decider {
             Self::NoSynthesisItem => &[&["synthesis"]],
             Self::NoFrameFile => &[&["raw", "fit"]],
             Self::Headerless => &[&["fit"]],
+            Self::MadeFrames => &[&["rows", "projection", "entries"]],
+            Self::MadeTables => &[&["phase"]],
+            Self::ShownLens => &[&["phase", "bits"]],
         };
         options.concat()
     }
@@ -117,6 +132,11 @@ impl Decider {
             Self::Model => "does nothing beside --model, which corrects without a board; give one of them",
             Self::NoFrameFile => "is for frames that are files, and none is; leave it out, or name a file",
             Self::Headerless => "does nothing beside --raw, whose samples are never scaled; give one of them",
+            Self::MadeFrames => "says how tables are made, and a frame has none; leave it out",
+            Self::MadeTables => {
+                "changes nothing about tables; leave it out, and give it to the command that uses them"
+            }
+            Self::ShownLens => "changes nothing about a lens's figures; leave it out",
             Self::NoBoardItem => {
                 "does nothing, since no item that is asked for goes through a board; leave it out, or add table1 or \
                  delay"
@@ -285,6 +305,9 @@ mod tests {
             (Decider::Model, options("correct")),
             (Decider::NoFrameFile, options("correct")),
             (Decider::Headerless, options("correct")),
+            (Decider::MadeFrames, options("frames")),
+            (Decider::MadeTables, options("tables")),
+            (Decider::ShownLens, options("lens")),
             (Decider::NoBoardItem, options("paper")),
             (Decider::NoPhotographItem, options("paper")),
             (Decider::NoFigure4, options("paper")),

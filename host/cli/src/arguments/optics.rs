@@ -19,9 +19,6 @@ use halfrow::optics::{self, Chosen, EQUIDISTANT, Optics, OpticsError, PAPER_FIEL
 /// The pixel pitch of the paper's sensor, in micrometres.
 const DEFAULT_PITCH: f64 = 2.2;
 
-/// The options that say how tables are made.
-pub(crate) const MAKING_TABLES: [&str; 3] = ["rows", "projection", "entries"];
-
 /// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Frame and lens")]
@@ -154,15 +151,6 @@ impl LensArguments {
             "height" => self.height == Some(geometry.height()),
             "bits" => self.bits == geometry.depth(),
             _ => self.centre_x.is_some_and(|column| geometry.with_centre(column).as_ref() == Ok(geometry)),
-        }
-    }
-
-    /// The option with which the call says how tables are made, if it does.
-    pub(crate) fn says_how(&self) -> Option<&'static str> {
-        match (self.rows, self.projection) {
-            (Some(_), _) => Some("--rows"),
-            (None, Some(_)) => Some("--projection"),
-            (None, None) => None,
         }
     }
 

@@ -35,7 +35,6 @@ codes::codes! {
         NobodyCorrects => "corrector-missing",
         RecordingCorrects => "recording-corrects-nothing",
         FaultWithoutEffect [target, reason] => "fault-without-effect",
-        RowsOfFrame [option] => "frame-without-row-factors",
         OtherThanTables [option, path] => "option-contradicts-tables",
         PitchAlone => "pixel-pitch-without-effect",
         LensPitchWithoutFile => "lens-pitch-without-lens-file",

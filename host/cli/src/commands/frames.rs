@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::{Arg, Args};
+use clap::Args;
 use halfrow_program::number::whole_number;
 use serde_json::json;
 
 use super::{Context, Failure};
-use crate::arguments::optics::{LensArguments, MAKING_TABLES};
-use crate::call_error::CallError;
+use crate::arguments::given::{Decider, Given};
+use crate::arguments::optics::LensArguments;
 use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
@@ -17,8 +17,10 @@ use halfrow::call::Files;
 use halfrow::frames::{self, Builtin};
 
 #[derive(Debug, Args)]
-#[command(mut_args(without_tables))]
+#[command(mut_args(|argument| Decider::MadeFrames.hides(argument)))]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     /// Only the frame with this name; may be given several times
     #[arg(long, value_name = "NAME")]
     only: Vec<Builtin>,
@@ -35,16 +37,8 @@ pub(super) struct Arguments {
     lens: LensArguments,
 }
 
-/// Hides an option that makes tables, which frames do not have. A call that gives one is refused.
-fn without_tables(argument: Arg) -> Arg {
-    let hidden = MAKING_TABLES.contains(&argument.get_id().as_str());
-    argument.hide(hidden)
-}
-
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    if let Some(option) = arguments.lens.says_how() {
-        return Err(Failure::call(CallError::RowsOfFrame { option }));
-    }
+    arguments.given.refuse_void(Decider::MadeFrames, &[]).map_err(Failure::call)?;
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let is_wanted = |frame: &Builtin| arguments.only.is_empty() || arguments.only.contains(frame);
     let chosen: Vec<_> = Builtin::ALL.into_iter().filter(is_wanted).collect();

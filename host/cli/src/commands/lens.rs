@@ -7,6 +7,7 @@ use halfrow_model::{GridShape, TableError};
 use serde_json::{Map, Value, json};
 
 use super::{Context, Failure, print};
+use crate::arguments::given::{Decider, Given};
 use crate::arguments::optics::LensArguments;
 use crate::console;
 use crate::document::print_result;
@@ -19,7 +20,10 @@ use halfrow::words::{count, grouped, verb};
 use halfrow_lab::{Amounts, Residuals};
 
 #[derive(Debug, Args)]
+#[command(mut_args(|argument| Decider::ShownLens.hides(argument)))]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     /// Write the horizontal error that is left at each sample as a picture, dark for none
     #[arg(long, value_name = "FILE.png")]
     map: Option<PathBuf>,
@@ -31,6 +35,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    arguments.given.refuse_void(Decider::ShownLens, &[]).map_err(Failure::call)?;
     arguments.map.as_deref().map_or(Ok(()), frames::check_png).map_err(Failure::call)?;
     prepare_files(
         &Files::new(arguments.overwrite)

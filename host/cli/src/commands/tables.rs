@@ -7,6 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::{Context, Failure};
+use crate::arguments::given::{Decider, Given};
 use crate::arguments::optics::{self, LensArguments};
 use crate::console;
 use crate::document::tell_result;
@@ -18,7 +19,10 @@ use halfrow::tables::{TableFile, TableFormat};
 use halfrow::words::count;
 
 #[derive(Debug, Args)]
+#[command(mut_args(|argument| Decider::MadeTables.hides(argument)))]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     #[arg(long, help = optics::kernel_help(" [default: hermite]"), value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
     kernel: Option<OsString>,
     /// Where to: FILE.json, or FILE.mem for two files that Verilog's $readmemh reads
@@ -32,6 +36,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    arguments.given.refuse_void(Decider::MadeTables, &[]).map_err(Failure::call)?;
     let format = TableFormat::of(&arguments.output).map_err(Failure::call)?;
     let of_settings = context.settings.kernel.as_deref().map(OsStr::new);
     let kernel = arguments.kernel.as_deref().or(of_settings);
