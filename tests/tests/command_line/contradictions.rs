@@ -221,6 +221,8 @@ fn an_option_of_paper_needs_an_item_that_heeds_it() {
     let folder = Folder::new();
     let call = ["paper", "fig5", "-o", "paper", "--board", "mock"];
     refused(&folder, &call, "--board does nothing, since no item that is asked for goes through a board");
+    let call = ["paper", "table1", "--images", ".", "-o", "paper", "--take-over"];
+    refused(&folder, &call, "--take-over does nothing, since no item that is asked for goes through a board");
     for (option, sentence) in [
         (&["--images", "."][..], "--images does nothing, since no item"),
         (&["--photograph", "p.png", "--lines", "l.toml"], "--photograph is for fig4"),

@@ -138,8 +138,8 @@ impl Decider {
             }
             Self::ShownLens => "changes nothing about a lens's figures; leave it out",
             Self::NoBoardItem => {
-                "does nothing, since no item that is asked for goes through a board; leave it out, or add table1 or \
-                 delay"
+                "does nothing, since no item that is asked for goes through a board; leave it out, or add delay, or name \
+                 a board for table1"
             }
             Self::NoPhotographItem => {
                 "does nothing, since no item that is asked for takes them; leave it out, or add fig12 or table1"

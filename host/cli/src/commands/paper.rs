@@ -60,12 +60,13 @@ fn item_parser() -> impl TypedValueParser<Value = Item> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let begun = Instant::now();
     let items = arguments.items();
-    arguments.check(&items, context).map_err(Failure::call)?;
+    let through_board = arguments.board.is_named(&context.settings);
+    let uses_board = items.iter().any(|item| item.uses_board(through_board));
+    arguments.check(&items, uses_board, context).map_err(Failure::call)?;
     let photographs = arguments.photographs(&items);
     let photographs = photographs.map_err(|error| Failure::call(error).in_value_of("--images"))?;
     let marked = arguments.marked().map_err(Failure::call)?;
     let folder = Folder::prepare(&arguments.output, arguments.overwrite).map_err(Failure::call)?;
-    let through_board = arguments.board.is_named(&context.settings);
     let mut material = Material {
         photographs: &photographs,
         marked: marked.as_ref(),
@@ -73,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         through_board,
         synthesis: &arguments.synthesis,
     };
-    if items.iter().any(|&item| material.uses_board(item)) {
+    if uses_board {
         material.board = Some(arguments.open(&context.settings)?);
     }
     let exhibits = make(&items, &mut material, context.quiet);
@@ -163,10 +164,10 @@ impl Arguments {
     }
 
     /// Refuses options without effect, and outputs that would replace existing files.
-    fn check(&self, items: &[Item], context: &Context) -> anyhow::Result<()> {
+    fn check(&self, items: &[Item], uses_board: bool, context: &Context) -> anyhow::Result<()> {
         let any = |is_meant: fn(Item) -> bool| items.iter().any(|&item| is_meant(item));
         for (is_wanted, decider) in [
-            (any(Item::goes_through_boards), Decider::NoBoardItem),
+            (uses_board, Decider::NoBoardItem),
             (any(Item::needs_photographs), Decider::NoPhotographItem),
             (any(|item| item == Item::Fig4), Decider::NoFigure4),
             (any(|item| item == Item::Resources), Decider::NoSynthesisItem),

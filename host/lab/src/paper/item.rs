@@ -193,10 +193,10 @@ impl Item {
         self.words().files
     }
 
-    /// Whether it is tried on a board, always or when a board is named.
+    /// Whether it is tried on a board: always, or `through_board`, which says whether Table 1 goes through the board too.
     #[must_use]
-    pub fn goes_through_boards(self) -> bool {
-        matches!(self, Self::Table1 | Self::Delay)
+    pub fn uses_board(self, through_board: bool) -> bool {
+        self == Self::Delay || self == Self::Table1 && through_board
     }
 
     /// Whether it takes the photographs of `--images`.

@@ -95,12 +95,6 @@ impl Material<'_> {
         }
     }
 
-    /// Whether an item is tried on a board.
-    #[must_use]
-    pub fn uses_board(&self, item: Item) -> bool {
-        item == Item::Delay || item == Item::Table1 && self.through_board
-    }
-
     /// The rows that an item computes or streams, for a progress bar.
     #[must_use]
     pub fn rows(&self, item: Item) -> u64 {
