@@ -67,9 +67,6 @@ pub(crate) enum CallError {
     /// One file was named for several frames.
     #[error("{} is one file for {frames} frames; name a folder with {option}", path.display())]
     OneFile { path: PathBuf, frames: usize, option: &'static str },
-    /// Frames are written to files only, not to stdout.
-    #[error("a frame goes to a file, but `{option} -` names none; give the name of a file or a folder")]
-    FramesToStdout { option: &'static str },
     /// The input has no file name to name its output after.
     #[error("{} has no file name; name a file", path.display())]
     Unnamed { path: PathBuf },

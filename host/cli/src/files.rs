@@ -19,11 +19,6 @@ pub(crate) fn prepare_files(files: &Files) -> Result<(), FilesError> {
     Ok(())
 }
 
-/// Refuses `-`, which means stdout to many programs, as a place for frames: it would become a folder of that name.
-pub(crate) fn refuse_stdout(place: &Path, option: &'static str) -> Result<(), CallError> {
-    if place == Path::new("-") { Err(CallError::FramesToStdout { option }) } else { Ok(()) }
-}
-
 /// Makes a folder and its parents.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CallError> {
     std::fs::create_dir_all(folder)

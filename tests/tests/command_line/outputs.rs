@@ -62,15 +62,16 @@ fn a_file_that_is_there_is_replaced_by_request_alone() {
 fn a_hyphen_is_no_folder() {
     let folder = Folder::new();
     let hyphen = |call: &[&str], option: &str| {
-        refused(
-            &folder,
-            &small(call[0], &call[1..]),
-            &format!("a frame goes to a file, but `{option} -` names none"),
-        );
+        refused(&folder, call, &format!("`{option} -` names no place"));
     };
-    hyphen(&["correct", "builtin:black", "--model", "-o", "-"], "-o");
-    hyphen(&["correct", "builtin:black", "--model", "-o", "x.pgm", "--preview", "-"], "--preview");
-    hyphen(&["frames", "-o", "-"], "-o");
+    let correct = small("correct", &["builtin:black", "--model"]);
+    hyphen(&[&correct[..], &["-o", "-"]].concat(), "--output");
+    hyphen(&[&correct[..], &["-o", "x.pgm", "--preview", "-"]].concat(), "--preview");
+    hyphen(&small("frames", &["-o", "-"]), "--output");
+    hyphen(&small("verify", &["--report", "-"]), "--report");
+    hyphen(&small("verify", &["--record", "-"]), "--record");
+    hyphen(&["paper", "fig8", "-o", "-"], "--output");
+    hyphen(&["manual", "-"], "FOLDER");
 }
 
 #[test]

@@ -44,7 +44,6 @@ codes::codes! {
         LensSizeMissing [path] => "lens-size-missing",
         OtherFormat [path] => "frame-format-contradicted",
         OneFile [path, frames, option] => "one-file-for-several-frames",
-        FramesToStdout [option] => "frames-to-stdout",
         Unnamed [path] => "input-without-name",
         FramesShare [path] => "frames-share-a-file",
         FolderNotMade [path] => "folder-not-made",

@@ -12,7 +12,7 @@ use crate::arguments::optics::LensArguments;
 use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
-use crate::files::{make_folder, prepare_files, refuse_stdout};
+use crate::files::{make_folder, prepare_files};
 use halfrow::call::Files;
 use halfrow::frames::{self, Builtin};
 
@@ -43,7 +43,6 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let is_wanted = |frame: &Builtin| arguments.only.is_empty() || arguments.only.contains(frame);
     let chosen: Vec<_> = Builtin::ALL.into_iter().filter(is_wanted).collect();
     let folder = &arguments.output;
-    refuse_stdout(folder, "-o").map_err(Failure::call)?;
     let places: Vec<_> = chosen.iter().map(|frame| folder.join(format!("{}.pgm", frame.name()))).collect();
     prepare_files(
         &Files::new(arguments.overwrite)

@@ -14,6 +14,14 @@ use halfrow_files::written_aside::{self, Place, WriteAsideError, folder_of};
 /// A file or folder that a call must not write, or cannot.
 #[derive(Debug, Error)]
 pub enum FilesError {
+    /// An output is named `-`, which means stdout to many programs. It would become a file or folder of that name.
+    #[error(
+        "`{option} -` names no place, and nothing is written to stdout there; name a file or folder with {option}"
+    )]
+    ToStdout {
+        /// The option that names the output.
+        option: &'static str,
+    },
     /// The call would write over a file that it reads.
     #[error(
         "{} is read by this call, and {option} would write there; an input is never overwritten, so name another place \
@@ -87,7 +95,8 @@ impl FilesError {
     #[must_use]
     pub fn option(&self) -> Option<&'static str> {
         match self {
-            Self::InputOverwritten { option, .. }
+            Self::ToStdout { option }
+            | Self::InputOverwritten { option, .. }
             | Self::Exists { option, .. }
             | Self::NotAFile { option, .. }
             | Self::FolderClosed { option, .. }
@@ -255,6 +264,10 @@ impl Files {
 impl Output {
     fn check(&self, overwrite: bool) -> Result<(), FilesError> {
         let (path, option) = (self.path.clone(), self.option);
+        let named = if self.shape == Shape::InFolder { folder_of(&self.path) } else { &self.path };
+        if named == Path::new("-") {
+            return Err(FilesError::ToStdout { option });
+        }
         match self.shape {
             Shape::Report => Ok(report::check_folder(&self.path, overwrite)?),
             Shape::File => Ok(written_aside::check(&self.path, overwrite)?),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::arguments::inputs::FrameName;
 use crate::call_error::CallError;
-use crate::files::{make_folder, refuse_stdout};
+use crate::files::make_folder;
 use halfrow::call::Files;
 use halfrow::frames::{Format, check_png};
 use halfrow_files::written_aside::Place;
@@ -56,7 +56,6 @@ impl Places {
         format: Format,
         option: &'static str,
     ) -> anyhow::Result<Vec<PathBuf>> {
-        refuse_stdout(place, option)?;
         let is_file = place.extension().is_some() && !place.is_dir();
         if is_file {
             let frames = inputs.len();

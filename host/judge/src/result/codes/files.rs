@@ -84,6 +84,7 @@ codes! {
         Pictures => "report-pictures-not-encoded",
     }
     FilesError {
+        ToStdout [option] => "output-to-stdout",
         InputOverwritten [path, option] => "input-would-be-overwritten",
         OutputsShare [first, second, path] => "outputs-share-a-file",
         Exists [path, option] => "file-in-folder-exists",
