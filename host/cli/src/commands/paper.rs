@@ -19,7 +19,8 @@ use halfrow::board::Board;
 use halfrow::call::Files;
 use halfrow::frames::preview::RgbImage;
 use halfrow_lab::paper::{
-    self, Claim, Exhibit, Folder, Item, MarkedError, MarkedPhotograph, Material, PaperError, TestedBoard,
+    self, Claim, Exhibit, Folder, Item, MarkedError, MarkedPhotograph, Material, Outcome, PaperError,
+    TestedBoard,
 };
 
 #[derive(Debug, Args)]
@@ -82,14 +83,14 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     material.board.iter_mut().for_each(TestedBoard::close);
     let exhibits = exhibits?;
     let page = folder.write(&exhibits).map_err(Failure::error)?;
+    let exit = Outcome::of(&exhibits).exit();
     if context.json {
-        let exit = exit(&exhibits);
         tell_result("paper", exit, None, paper::numbers(&exhibits))?;
         return Ok(exit);
     }
     conclude(&exhibits);
     console::tell(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()));
-    Ok(exit(&exhibits))
+    Ok(exit)
 }
 
 fn make(items: &[Item], material: &mut Material<'_>, quiet: bool) -> Result<Vec<Exhibit>, PaperError> {
@@ -140,20 +141,6 @@ fn line(claim: &Claim) -> String {
     };
     let found = format!("{} {}", claim.printed(), claim.unit);
     format!("  {mark:<7} {}: {} ({paper}{})", claim.what, found.trim_end(), claim.condition())
-}
-
-/// An error of the board weighs more than a number that could not be reproduced.
-fn exit(exhibits: &[Exhibit]) -> Exit {
-    let missed = || exhibits.iter().flat_map(|exhibit| &exhibit.claims).filter(|claim| !claim.holds());
-    if missed().any(|claim| claim.judges_board) {
-        Exit::Fail
-    } else if missed().next().is_some() {
-        Exit::Error
-    } else if exhibits.iter().all(|exhibit| !exhibit.open.is_empty()) {
-        Exit::NothingJudged
-    } else {
-        Exit::Pass
-    }
 }
 
 impl Arguments {

@@ -7,6 +7,7 @@ use png::EncodingError;
 
 use super::exhibit::{Cell, Claim, Drawing, Exhibit, Picture, Table};
 use super::folder::{encoded, file_name};
+use super::outcome::Outcome;
 use halfrow::report;
 
 /// The page of `exhibits`, in their order.
@@ -25,23 +26,16 @@ pub(super) fn render(exhibits: &[Exhibit]) -> Result<String, EncodingError> {
 /// The overall result, and what could not be tried.
 fn banner(exhibits: &[Exhibit]) -> Markup {
     let claims: Vec<&Claim> = exhibits.iter().flat_map(|exhibit| &exhibit.claims).collect();
-    let missed = || claims.iter().filter(|claim| !claim.holds());
+    let accepted = claims.iter().filter(|claim| claim.holds()).count();
     let open = exhibits.iter().map(|exhibit| exhibit.open.len()).sum::<usize>();
-    let (class, word) = match missed().find(|claim| claim.judges_board).or(missed().next()) {
-        Some(claim) if claim.judges_board => ("fail", "BOARD DIFFERS"),
-        Some(_) => ("error", "NOT REPRODUCED"),
-        None if claims.is_empty() && open > 0 => ("error", "NOTHING TRIED"),
-        None if claims.is_empty() => ("pass", "DRAWN"),
-        None if open > 0 => ("error", "REPRODUCED IN PART"),
-        None => ("pass", "REPRODUCED"),
-    };
+    let outcome = Outcome::of(exhibits);
     html! {
-        header.(class) {
-            p.verdict { (word) }
+        header.(outcome.class()) {
+            p.verdict { (outcome.word(!claims.is_empty())) }
             h1 {
                 @if claims.is_empty() { "No number was held to the paper" }
                 @else {
-                    (claims.len() - missed().count()) " of " (claims.len()) " numbers that were tried are accepted"
+                    (accepted) " of " (claims.len()) " numbers that were tried are accepted"
                 }
                 @if open > 0 { ", " (open) " not tried" }
             }
