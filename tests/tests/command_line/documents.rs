@@ -49,6 +49,10 @@ fn every_command_that_prints_a_result_prints_a_document() {
     for (command, call) in calls {
         let said = told(&folder, 0, &call);
         assert_eq!((&said["command"], &said["error"]), (&command.into(), &Value::Null), "{call:?}");
+        if command == "paper" {
+            let kept: Value = serde_json::from_str(&folder.text("page/paper.json")).unwrap();
+            assert_eq!(kept, said);
+        }
     }
     assert_eq!(told(&folder, 0, &small("verify", &["--list"]))["listed"].as_array().unwrap().len(), 19);
 }

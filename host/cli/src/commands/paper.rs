@@ -10,7 +10,6 @@ use super::{Context, Failure};
 use crate::arguments::board::{self, BoardArguments, Replays};
 use crate::arguments::given::{Decider, Given};
 use crate::call_error::CallError;
-use crate::document::tell_result;
 use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::settings::Settings;
@@ -85,7 +84,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let page = folder.write(&exhibits).map_err(Failure::error)?;
     let exit = Outcome::of(&exhibits).exit();
     if context.json {
-        tell_result("paper", exit, None, paper::numbers(&exhibits))?;
+        console::tell(&paper::document(&exhibits));
         return Ok(exit);
     }
     conclude(&exhibits);

@@ -7,9 +7,9 @@ use crate::exit::Exit;
 use crate::verdict::Verdict;
 
 /// The version of the shape of all documents. It goes up when a key is removed or changes its meaning, not when one is added.
-pub const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 1;
 
-/// The version of a document's shape. It is [`SCHEMA`]; a document with any other is not read.
+/// The version of a document's shape. A document with any other is not read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Schema;
 

@@ -51,7 +51,7 @@ pub use defect::{
     ClampEnd, ColumnParity, ContentKind, Counting, Defect, FlippedBit, Instead, KernelSwitch, LineFault,
     MadeAs, MadeWith, Memory, NamedBlanking, Reading, RowSource, SampleBus, SampleLines, StaleFrames,
 };
-pub use document::{Document, SCHEMA, Schema};
+pub use document::{Document, Schema};
 pub use doubt::{BrokenOff, Doubt};
 pub use evidence::{Evidence, EvidenceReport};
 pub use extent::Extent;

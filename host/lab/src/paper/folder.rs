@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::exhibit::{Drawing, Exhibit, Picture};
-use super::{Item, page};
+use super::{Item, Outcome, page};
 use halfrow::frames::preview;
-use halfrow::result::SCHEMA;
+use halfrow::result::{Document, Schema};
 use halfrow_files::written_aside::{Claim, WriteAsideError, check, write_aside};
 
 /// Name of the page.
@@ -89,18 +89,22 @@ impl Folder {
     }
 }
 
-/// The numbers, under the head that all documents of the program share.
-fn document(exhibits: &[Exhibit]) -> Value {
-    let mut document = json!({ "schema": SCHEMA, "command": "paper" });
-    if let (Some(head), Value::Object(numbers)) = (document.as_object_mut(), numbers(exhibits)) {
-        head.extend(numbers);
-    }
-    document
+/// Every number of every exhibit as a JSON document of the program, indented.
+#[must_use]
+pub fn document(exhibits: &[Exhibit]) -> String {
+    let document = Document {
+        schema: Schema,
+        command: "paper",
+        verdict: None,
+        exit_code: Outcome::of(exhibits).exit(),
+        board: None,
+        error: None,
+        rest: numbers(exhibits),
+    };
+    format!("{:#}", json!(document))
 }
 
-/// Every number of every exhibit.
-#[must_use]
-pub fn numbers(exhibits: &[Exhibit]) -> Value {
+fn numbers(exhibits: &[Exhibit]) -> Value {
     let exhibits = exhibits.iter().map(|exhibit| {
         let claims: Vec<Value> = exhibit.claims.iter().map(super::Claim::json).collect();
         let tables: Vec<Value> = exhibit.tables.iter().map(super::Table::json).collect();

@@ -39,7 +39,7 @@ pub use distortion::distorted;
 pub(crate) use distortion::distorted_by;
 pub use error::PaperError;
 pub use exhibit::{Accepted, Cell, Claim, Exhibit, Picture, Table};
-pub use folder::{Folder, FolderError, numbers};
+pub use folder::{Folder, FolderError, document};
 pub use item::Item;
 pub use marked::{MarkedError, MarkedPhotograph};
 pub use outcome::Outcome;
