@@ -73,7 +73,8 @@ fn enough(errors: &Errors, limit: RetryLimit, too_poor: bool) -> String {
     let verdict = if too_poor { "too poor for verify" } else { "good enough for verify" };
     let share = 100.0 * errors.lost() as f64 / errors.packets_out.max(1) as f64;
     let (again, all) = (grouped(errors.lost()), grouped(errors.packets_out));
-    let (percent, fixed) = (100.0 * limit.share, limit.fixed);
+    // Rounded: 7 % as a share, times 100, is not 7 any more.
+    let (percent, fixed) = ((1e8 * limit.share).round() / 1e6, limit.fixed);
     format!(
         "{:<12} {verdict}: {share:.1} % sent again ({again} of {all}), the limit is {percent} % and {fixed}",
         "judging"
@@ -146,5 +147,31 @@ fn rate(rate: &Rate) -> String {
         (Some(rate), Some(share)) => format!("{:.3} MB/s ({:.1} %)", rate / 1e6, 100.0 * share),
         (Some(rate), None) => format!("{:.3} MB/s", rate / 1e6),
         (None, _) => NOT_MEASURED.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limit_is_printed_as_it_was_given() {
+        let errors = Errors {
+            packets: 2,
+            bytes: 20,
+            packets_out: 1,
+            damaged_out: 0,
+            damaged_in: 0,
+            retries: 0,
+            late: 0,
+            wrong: 0,
+            rate: 0.0,
+            bound: 1.0,
+        };
+        for percent in [0.0, 0.1, 2.345, 7.0, 14.0, 28.0, 55.0, 100.0] {
+            let limit = RetryLimit { share: percent / 100.0, fixed: 16 };
+            let said = enough(&errors, limit, false);
+            assert!(said.ends_with(&format!(", the limit is {percent} % and 16")), "{said}");
+        }
     }
 }
