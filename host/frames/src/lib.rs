@@ -45,7 +45,6 @@ pub use format::{Format, UnknownFormat};
 pub use heat_map::HeatMap;
 pub use mosaic::mosaic;
 pub use orientation::Orientation;
-pub use photograph::is_photograph;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
 pub use rows::{FrameShape, RowReader};
 pub use scene::Scene;
@@ -74,12 +73,14 @@ pub struct Decoded {
     pub fitting: Option<Fitting>,
     /// How a viewer must turn raw samples. A picture in colour is already turned.
     pub orientation: Orientation,
+    /// Whether its colours are coded for the screen, as those of a JPEG, WebP or BMP are known to be.
+    pub is_coded: bool,
 }
 
 /// Of raw samples, or of a picture that already had its size.
 impl From<Frame> for Decoded {
     fn from(frame: Frame) -> Self {
-        Self { frame, fitting: None, orientation: Orientation::default() }
+        Self { frame, fitting: None, orientation: Orientation::default(), is_coded: false }
     }
 }
 

@@ -4,9 +4,7 @@
 //! scaled to the depth; in a grey picture all colours are equal. Gamma and colour profiles are not applied, and alpha is
 //! ignored. The header decides whether a picture is decoded at all, so that none takes more memory than [`MAX_PIXELS`] need.
 
-use std::fs::{self, File};
-use std::io::{Cursor, Read as _};
-use std::path::Path;
+use std::io::Cursor;
 
 use image::codecs::bmp::BmpDecoder;
 use image::codecs::webp::WebPDecoder;
@@ -20,9 +18,6 @@ use super::{DecodeError, Decoded, Fitting, PictureSize, ReadOptions, mosaic};
 
 /// The most pixels that a photograph may have.
 pub(super) const MAX_PIXELS: u64 = 100_000_000;
-
-/// The first bytes that show the format.
-const HEAD: u64 = 16;
 
 /// A format of photographs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,16 +98,6 @@ impl PhotographFormat {
     }
 }
 
-/// Whether the file `path` is a photograph, whose colours are coded for the screen. Always false for a pipe, which cannot be read
-/// twice.
-#[must_use]
-pub fn is_photograph(path: &Path) -> bool {
-    let mut head = Vec::new();
-    let regular = fs::metadata(path).is_ok_and(|about| about.is_file());
-    let mut read = || File::open(path)?.take(HEAD).read_to_end(&mut head);
-    regular && read().is_ok() && PhotographFormat::of(&head).is_some()
-}
-
 /// The frame of the photograph in `bytes`, as it is [`shown`], mosaicked to `how.phase`.
 ///
 /// # Errors
@@ -123,7 +108,7 @@ pub(super) fn decode(
     how: &ReadOptions,
 ) -> Result<Decoded, DecodeError> {
     let (picture, fitting) = shown(format, bytes, how.size)?;
-    Ok(Decoded { fitting, ..mosaic::of_rgb(&picture, how)?.into() })
+    Ok(Decoded { fitting, is_coded: true, ..mosaic::of_rgb(&picture, how)?.into() })
 }
 
 /// The photograph in `bytes`, turned by its EXIF orientation, and how it was fitted.

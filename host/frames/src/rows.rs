@@ -48,6 +48,7 @@ pub struct RowReader {
     next: usize,
     fitting: Option<Fitting>,
     orientation: Orientation,
+    is_coded: bool,
     source: Source,
 }
 
@@ -94,7 +95,7 @@ impl RowReader {
             Lines { path: path.to_owned(), input, raster, depth: how.depth, bytes: Vec::new(), taken: 0 };
         let source = Source::File(lines);
         let (width, height, orientation) = (raster.width, raster.height, Orientation::default());
-        Ok(Self { width, height, next: 0, fitting: None, orientation, source })
+        Ok(Self { width, height, next: 0, fitting: None, orientation, is_coded: false, source })
     }
 
     /// Columns.
@@ -119,6 +120,12 @@ impl RowReader {
     #[must_use]
     pub fn orientation(&self) -> Orientation {
         self.orientation
+    }
+
+    /// Whether its colours are coded for the screen; see [`Decoded::is_coded`].
+    #[must_use]
+    pub fn is_coded(&self) -> bool {
+        self.is_coded
     }
 
     /// Reads the next row into the first [`Self::width`] of `samples`, and returns whether there was one.
@@ -162,8 +169,8 @@ impl Lines {
 
 impl From<Decoded> for RowReader {
     fn from(decoded: Decoded) -> Self {
-        let Decoded { frame, fitting, orientation } = decoded;
-        Self { fitting, orientation, ..Self::from(frame) }
+        let Decoded { frame, fitting, orientation, is_coded } = decoded;
+        Self { fitting, orientation, is_coded, ..Self::from(frame) }
     }
 }
 
@@ -181,6 +188,7 @@ impl From<Arc<Frame>> for RowReader {
             next: 0,
             fitting: None,
             orientation: Orientation::default(),
+            is_coded: false,
             source: Source::Frame(frame),
         }
     }

@@ -66,6 +66,21 @@ fn light_is_coded_for_the_screen() {
     }
 }
 
+/// 66 and 77 are the first bytes of a BMP.
+#[test]
+fn headerless_samples_are_no_photograph_however_they_begin() {
+    let folder = Folder::new();
+    folder.write("dark.raw", [66, 77].repeat(64 * 16));
+    let call =
+        ["dark.raw", "--raw", "u8", "--bits", "8", "--model", "-o", "out.pgm", "--preview", "look.png"];
+    let ended = folder.halfrow(small("correct", &call));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let image = halfrow::frames::read_rgb(&folder.path().join("look.png")).unwrap();
+    // By IEC 61966-2-1, computed in Python: 66 and 77 of 255 become 139 and 149.
+    let pixel = pixel(&image, 8, 64);
+    assert!(pixel.iter().all(|colour| (139..=149).contains(colour)), "{pixel:?}");
+}
+
 #[test]
 fn several_frames_go_into_folders_in_the_format_that_is_asked_for() {
     let folder = Folder::new();

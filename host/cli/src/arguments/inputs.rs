@@ -15,8 +15,7 @@ use halfrow_model::{Geometry, Phase};
 
 use halfrow::call::{Input, check_size};
 use halfrow::frames::{
-    self, Builtin, Decoded, Fitting, FrameFile, PictureSize, RawGeometry, RawLayout, ReadOptions, RowReader,
-    Scene,
+    Builtin, Decoded, Fitting, FrameFile, PictureSize, RawGeometry, RawLayout, ReadOptions, RowReader, Scene,
 };
 use halfrow::run::FrameSource;
 
@@ -98,11 +97,6 @@ impl FrameName {
             Self::Builtin(_) => false,
             Self::File(path) => fs::metadata(path).map_or(true, |about| about.is_file()),
         }
-    }
-
-    /// Whether it is a photograph, whose colours are coded for the screen.
-    pub(crate) fn is_photograph(&self) -> bool {
-        self.file().is_some_and(frames::is_photograph)
     }
 
     /// The rows of the frame: read from a file as `how` says, or rendered for `scene`. A file must have the size of `scene`.

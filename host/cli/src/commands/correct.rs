@@ -108,6 +108,14 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     report(context.json, board?, &places, &job.chosen.source)
 }
 
+/// How a frame is shown.
+#[derive(Clone, Copy, Default)]
+struct Look {
+    orientation: Orientation,
+    /// Whether its colours are coded for the screen.
+    is_coded: bool,
+}
+
 /// What is to be corrected, and how.
 struct Job<'a> {
     arguments: &'a Arguments,
@@ -127,18 +135,18 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Writes the preview of the frame with this index, turned by `orientation`, if previews are asked for.
+    /// Writes the preview of the frame with this index, if previews are asked for.
     fn write_preview(
         &self,
         places: &Places,
         index: usize,
-        orientation: Orientation,
+        look: Look,
         corrected: &Frame,
     ) -> Result<(), WriteError> {
         let Some(path) = places.previews.get(index) else { return Ok(()) };
-        let is_coded = self.arguments.preview_coded || self.inputs[index].is_photograph();
+        let is_coded = self.arguments.preview_coded || look.is_coded;
         let develop = if is_coded { preview::demosaic_coded } else { preview::demosaic };
-        frames::write_rgb(path, &develop(corrected).turned(orientation), self.arguments.overwrite)
+        frames::write_rgb(path, &develop(corrected).turned(look.orientation), self.arguments.overwrite)
     }
 }
 

@@ -4,9 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use halfrow_frames::preview::{RgbImage, encode_png_rgb};
-use halfrow_frames::{
-    DecodeError, FrameFile, PictureSize, ReadError, ReadOptions, decode, is_photograph, mosaic, read,
-};
+use halfrow_frames::{DecodeError, FrameFile, PictureSize, ReadError, ReadOptions, decode, mosaic, read};
 use halfrow_frames::{RowReader, read_rgb, read_shown};
 use halfrow_model::{BitDepth, Phase};
 use proptest::prelude::*;
@@ -269,12 +267,14 @@ fn what_cameras_put_behind_a_jpeg_is_passed_over() {
 }
 
 #[test]
-fn photographs_are_known_by_their_first_bytes() {
-    for (name, _) in READ {
-        assert!(is_photograph(&path(name)), "{name}");
-    }
-    for name in ["small.png", "make.py", "nowhere.jpg"] {
-        assert!(!is_photograph(&path(name)), "{name}");
+fn colours_of_photographs_alone_are_coded_for_the_screen() {
+    let how = ReadOptions::default();
+    for (name, is_coded) in
+        [("baseline.jpg", true), ("lossy.webp", true), ("colour.bmp", true), ("small.png", false)]
+    {
+        let read = FrameFile::read(&path(name)).unwrap().decode(&how).unwrap();
+        let rows = RowReader::open(&path(name), &how).unwrap();
+        assert_eq!((read.is_coded, rows.is_coded()), (is_coded, is_coded), "{name}");
     }
 }
 

@@ -9,10 +9,10 @@ use anyhow::Context as _;
 use halfrow_model::Frame;
 
 use super::places::Places;
-use super::{Context, Failure, Job};
+use super::{Context, Failure, Job, Look};
 use halfrow::board::Board;
 use halfrow::correction::Correction;
-use halfrow::frames::{self, Decoded, Orientation};
+use halfrow::frames::{self, Decoded};
 use halfrow::progress::Progress;
 use halfrow::run::{self, JUDGED};
 use halfrow::target::BoardKind;
@@ -46,11 +46,11 @@ impl Job<'_> {
             first_frame: 0,
         };
         let (mut unread, mut unwritten) = (None, None);
-        // The orientations of the frames on their way through the board.
-        let orientations = RefCell::new(VecDeque::new());
+        // Of the frames on their way through the board.
+        let looks = RefCell::new(VecDeque::new());
         let inputs = self.inputs.iter().map_while(|input| match input.frame(&self.how, &self.scene) {
-            Ok(Decoded { frame, orientation, .. }) => {
-                orientations.borrow_mut().push_back(orientation);
+            Ok(Decoded { frame, orientation, is_coded, .. }) => {
+                looks.borrow_mut().push_back(Look { orientation, is_coded });
                 Some(Arc::new(frame))
             }
             Err(error) => {
@@ -60,8 +60,8 @@ impl Job<'_> {
         });
         let mut indices = 0..;
         let take = |samples| {
-            let orientation = orientations.borrow_mut().pop_front().unwrap_or_default();
-            let written = self.write(places, indices.next().unwrap_or_default(), orientation, samples);
+            let look = looks.borrow_mut().pop_front().unwrap_or_default();
+            let written = self.write(places, indices.next().unwrap_or_default(), look, samples);
             unwritten = written.err();
             if unwritten.is_none() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
@@ -73,19 +73,13 @@ impl Job<'_> {
         }
     }
 
-    fn write(
-        &self,
-        places: &Places,
-        index: usize,
-        orientation: Orientation,
-        samples: Vec<u16>,
-    ) -> Result<(), Failure> {
+    fn write(&self, places: &Places, index: usize, look: Look, samples: Vec<u16>) -> Result<(), Failure> {
         let width = self.scene.geometry.width();
         let frame = Frame::new(width, self.how.depth, self.how.phase, samples)
             .context("the board's samples are no frame; judge it with `halfrow verify`")
             .map_err(Failure::error)?;
-        frames::write_oriented(&places.frames[index], &frame, orientation, self.arguments.overwrite)
+        frames::write_oriented(&places.frames[index], &frame, look.orientation, self.arguments.overwrite)
             .map_err(Failure::error)?;
-        self.write_preview(places, index, orientation, &frame).map_err(Failure::error)
+        self.write_preview(places, index, look, &frame).map_err(Failure::error)
     }
 }

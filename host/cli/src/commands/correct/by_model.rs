@@ -3,7 +3,7 @@
 use halfrow_model::{Corrector, Frame};
 
 use super::places::Places;
-use super::{Failure, Job};
+use super::{Failure, Job, Look};
 use halfrow::frames::{self, FrameShape, WriteError, parallel};
 use halfrow::progress::Progress;
 use halfrow::reference;
@@ -23,6 +23,7 @@ impl Job<'_> {
     fn correct_one(&self, places: &Places, index: usize, corrector: &mut Corrector) -> Result<(), Failure> {
         let geometry = self.chosen.tables.geometry();
         let mut rows = self.inputs[index].rows(&self.how, &self.scene).map_err(Failure::call)?;
+        let look = Look { orientation: rows.orientation(), is_coded: rows.is_coded() };
         let mut entering = vec![0; geometry.width()];
         let mut numbers = 0..;
         let mut kept = Vec::new();
@@ -31,7 +32,7 @@ impl Job<'_> {
             height: geometry.height(),
             depth: geometry.depth(),
             phase: self.how.phase,
-            orientation: rows.orientation(),
+            orientation: look.orientation,
         };
         let correct_next = |leaving: &mut [u16]| -> anyhow::Result<()> {
             rows.next_row(&mut entering)?;
@@ -49,7 +50,7 @@ impl Job<'_> {
         if !kept.is_empty() {
             let corrected =
                 Frame::new(shape.width, shape.depth, shape.phase, kept).map_err(Failure::error)?;
-            self.write_preview(places, index, shape.orientation, &corrected).map_err(Failure::error)?;
+            self.write_preview(places, index, look, &corrected).map_err(Failure::error)?;
         }
         Ok(())
     }
