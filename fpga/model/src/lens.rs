@@ -168,13 +168,18 @@ impl Equidistant {
         self.radius
     }
 
-    /// The direction seen at the image point (`x`, `y`), as a unit vector: u right, v down, w forward (Eq. 2).
+    /// The direction seen at the image point (`x`, `y`), as a unit vector: u right, v down, w forward (Eq. 2). None farther out
+    /// than πf, where nothing is imaged.
     ///
-    /// Beyond 90° (r > πf/2) w is negative: the ray comes from behind the lens. Points farther out than πf are no image of
-    /// anything.
+    /// Beyond 90° (r > πf/2) w is negative: the ray comes from behind the lens.
     #[must_use]
-    pub fn ray(&self, x: f64, y: f64) -> [f64; 3] {
+    pub fn ray(&self, x: f64, y: f64) -> Option<[f64; 3]> {
         let r = x.hypot(y);
+        (r <= PI * self.focal_length).then(|| self.direction(x, y, r))
+    }
+
+    /// [`Self::ray`] at the distance `r` from the axis, going on periodically beyond πf.
+    fn direction(&self, x: f64, y: f64, r: f64) -> [f64; 3] {
         if r == 0.0 {
             return [0.0, 0.0, 1.0];
         }
@@ -182,10 +187,10 @@ impl Equidistant {
         [sine * x / r, sine * y / r, cosine]
     }
 
-    /// The direction seen at the image point (`x`, `y`) as longitude and latitude.
+    /// The direction seen at the image point (`x`, `y`), which is no farther out than πf, as longitude and latitude.
     #[must_use]
     pub fn spherical(&self, x: f64, y: f64) -> Spherical {
-        Spherical::of(self.ray(x, y))
+        Spherical::of(self.direction(x, y, x.hypot(y)))
     }
 
     /// Where the direction `ray` is imaged, (x, y) in pixels: the inverse of [`Self::ray`] for vectors of any length.

@@ -101,6 +101,11 @@ fn imaged([u, v, w]: [f64; 3]) -> [f64; 2] {
     [319.5 + r * u / aside, 319.5 + r * v / aside]
 }
 
+/// A file of lines in a photograph whose image circle is said to have this radius.
+fn file(radius: u32, lines: &[Value]) -> String {
+    json!({ "circle": { "centre": [319.5, 319.5], "radius": radius }, "lines": lines }).to_string()
+}
+
 /// Two upright edges and a wall's long foot in a photograph of the user's own, which here is the street as written before.
 #[test]
 fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
@@ -114,9 +119,7 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
         line([-6.0, 3.0, 4.0], [6.0, 3.0, 4.0], "level"),
         line([-5.0, -4.0, 2.0], [-5.0, -4.0, 30.0], "straight"),
     ];
-    let file =
-        |lines: &[Value]| json!({ "circle": { "centre": [319.5, 319.5], "radius": 320 }, "lines": lines });
-    folder.write("lines.json", file(&lines).to_string());
+    folder.write("lines.json", file(320, &lines));
     let call = ["fig4", "--photograph", "photograph.png", "--lines", "lines.json", "--overwrite"];
     let (report, _) = made(&folder, 0, &call);
     assert_eq!(report["items"][0]["claims"], json!([]), "what the street must fulfil is not asked of it");
@@ -131,11 +134,13 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
     assert_eq!(folder.read("out/fig-4a.png"), folder.read("photograph.png"));
     for (content, said) in [
         ("{}".to_owned(), "is no file of lines"),
-        (json!({ "circle": { "centre": [1, 1], "radius": 0 }, "lines": [] }).to_string(), "has the radius 0"),
+        (file(0, &[]), "has the radius 0"),
         (
-            file(&[lines[0].clone(), json!({ "from": [9, 9], "to": [9, 9], "is": "level" })]).to_string(),
+            file(320, &[lines[0].clone(), json!({ "from": [9, 9], "to": [9, 9], "is": "level" })]),
             "entry 2 of `lines` in lines.json",
         ),
+        // Both its ends lie four such radii from the middle.
+        (file(45, &lines[..1]), "entry 1 of `lines` in lines.json"),
     ] {
         folder.write("lines.json", content);
         refused(&folder, &[&["paper", "-o", "out"], &call[..]].concat(), said);

@@ -33,7 +33,7 @@ fn a_wider_field_of_view_widens_the_circle_and_keeps_the_focal_length() {
 
 #[test]
 fn the_radius_is_where_90_degrees_land() {
-    let [u, v, w] = lens().ray(lens().radius(), 0.0);
+    let [u, v, w] = lens().ray(lens().radius(), 0.0).unwrap();
     assert_close(u, 1.0);
     assert_eq!(v, 0.0);
     assert!(w.abs() < 1e-15);
@@ -41,7 +41,7 @@ fn the_radius_is_where_90_degrees_land() {
 
 #[test]
 fn the_centre_looks_straight_ahead() {
-    assert_eq!(lens().ray(0.0, 0.0), [0.0, 0.0, 1.0]);
+    assert_eq!(lens().ray(0.0, 0.0), Some([0.0, 0.0, 1.0]));
     assert_eq!(lens().image_point([0.0, 0.0, 3.0]), (0.0, 0.0));
 }
 
@@ -58,7 +58,7 @@ fn a_diagonal_ray_at_45_degrees_has_a_latitude_of_30_degrees() {
 fn beyond_90_degrees_the_ray_comes_from_behind() {
     // 120° off the axis, 30° below the horizontal; expected values from Python's math module.
     let (x, y) = (181.379_936_422_341_78, 104.719_755_119_659_75);
-    let [u, v, w] = lens().ray(x, y);
+    let [u, v, w] = lens().ray(x, y).unwrap();
     assert_close(u, 0.75);
     assert_close(v, 0.433_012_701_892_219_3);
     assert_close(w, -0.5);
@@ -72,6 +72,8 @@ fn straight_back_is_imaged_on_the_rim() {
     let (x, y) = lens().image_point([0.0, 0.0, -2.0]);
     assert_close(x, 100.0 * PI);
     assert_eq!(y, 0.0);
+    assert!(lens().ray(314.1, 0.0).is_some());
+    assert_eq!(lens().ray(0.0, 314.2), None);
 }
 
 #[test]
@@ -93,7 +95,7 @@ proptest! {
     #[test]
     fn a_ray_has_unit_length_and_returns_to_its_point(r in 0.0..0.999 * PI, angle in -PI..PI) {
         let (x, y) = (100.0 * r * angle.cos(), 100.0 * r * angle.sin());
-        let ray = lens().ray(x, y);
+        let ray = lens().ray(x, y).unwrap();
         prop_assert!((ray.iter().map(|part| part * part).sum::<f64>() - 1.0).abs() < 1e-12);
         let (back_x, back_y) = lens().image_point(ray.map(|part| 7.0 * part));
         prop_assert!((back_x - x).abs() < 1e-6 && (back_y - y).abs() < 1e-6);

@@ -33,7 +33,7 @@ impl Sight for Scene {
     }
 
     fn ray(&self, x: f64, y: f64) -> Option<[f64; 3]> {
-        Some(self.lens.ray(x, y))
+        self.lens.ray(x, y)
     }
 
     fn on_horizon(&self, longitude: f64) -> Option<f64> {

@@ -126,7 +126,8 @@ impl MarkedPhotograph {
         let lens = lens.ok_or_else(|| MarkedError::Radius { path: path(), radius })?;
         let ray = |[x, y]: [f64; 2]| lens.ray((x - column) / radius * RADIUS, (y - row) / radius * RADIUS);
         let marked = content.lines.iter().zip(1..).map(|(line, number)| {
-            let found = Line::between([ray(line.from), ray(line.to)], line.is);
+            let ends = ray(line.from).zip(ray(line.to));
+            let found = ends.and_then(|(from, to)| Line::between([from, to], line.is));
             found.ok_or_else(|| MarkedError::Line { path: path(), number })
         });
         let lines = marked.collect::<Result<_, _>>()?;
