@@ -111,7 +111,7 @@ codes::codes! {
         = Write,
     }
     TrainingError {
-        Geometry => "photograph-too-small",
+        Geometry => "photograph-of-impossible-size",
         Singular => "photographs-say-too-little",
         Kernel => "trained-kernel-impossible",
         Lens => "training-lens-refused",
