@@ -15,7 +15,7 @@ use crate::commands::{Context, Failure, codes};
 use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::settings::Settings;
-use crate::{console, flags, progress, text};
+use crate::{console, flags, text};
 use halfrow::call::{self, Files, FilesError, Input};
 use halfrow::files::check_regular;
 use halfrow::link::{Candidate, Recording, RecordingFile};
@@ -247,7 +247,7 @@ fn judge(
     let judged = candidate.and_then(|candidate| {
         let (candidate, lost) =
             RecordedRun::begin(plan, options, candidate, recording).map_err(Failure::error)?;
-        let watched = progress::for_stderr(context.quiet || context.json);
+        let watched = context.progress();
         Ok((run::verify(plan, candidate, options, watched.as_ref())?, lost))
     });
     let (mut finished, lost) = match judged {

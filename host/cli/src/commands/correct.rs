@@ -18,11 +18,11 @@ use crate::arguments::inputs::{FrameName, InputArguments, tell_fitting};
 use crate::arguments::optics::{self, LensArguments};
 use crate::arguments::table_file::TableArgument;
 use crate::call_error::CallError;
+use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::settings::Settings;
-use crate::{console, progress};
 use halfrow::call::Files;
 use halfrow::frames::{self, Format, Orientation, ReadOptions, Scene, WriteError, preview};
 use halfrow::optics::Chosen;
@@ -97,7 +97,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     job.check(context.quiet).map_err(Failure::call)?;
     let files = places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)));
     prepare_files(&files).map_err(Failure::call)?;
-    let watched = progress::for_stderr(context.quiet || context.json);
+    let watched = context.progress();
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {
         job.by_model(&places, watched.as_ref()).map(|()| None)

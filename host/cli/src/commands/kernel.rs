@@ -13,10 +13,10 @@ use serde_json::{Map, Value, json};
 use super::{Context, Failure, print};
 use crate::arguments::optics;
 use crate::call_error::CallError;
+use crate::console;
 use crate::document::{print_result, tell_result};
 use crate::exit::Exit;
 use crate::files::prepare_files;
-use crate::{console, progress};
 use halfrow::call::Files;
 use halfrow::files::check_regular;
 use halfrow::frames::preview::RgbImage;
@@ -151,7 +151,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
         TapCount::Five => Taps::Five,
         TapCount::Seven => Taps::Seven,
     };
-    let watched = progress::for_stderr(context.quiet);
+    let watched = context.progress();
     watched.rows_expected(rows(&images));
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
@@ -231,7 +231,7 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     let kernel = optics::kernel(&arguments.kernel)?;
     let (_, images) =
         photographs(&paths(&arguments.images).map_err(Failure::call)?).map_err(Failure::call)?;
-    let watched = progress::for_stderr(context.quiet);
+    let watched = context.progress();
     watched.rows_expected(rows(&images));
     let measured = measure(&images, &kernel, watched.as_ref());
     watched.done();

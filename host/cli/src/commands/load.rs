@@ -22,7 +22,6 @@ use crate::arguments::board::{refuse_recording, wrong};
 use crate::bitstreams::{BOARDS, BitstreamBoard};
 use crate::document::result_text;
 use crate::exit::Exit;
-use crate::progress::ChildOutput;
 use crate::{console, pool, signals};
 use halfrow::board::{Board, BoardError, OpenOptions, Stop, WhenHeld};
 use halfrow::link::{self, Class};
@@ -78,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let stopped = move || Exit::stopped_by(signal.load(Ordering::Relaxed));
     let stop = Stop::when(stopped.clone());
     let call = Call::new(onto.loader_name, onto.other_loader, &arguments.file, &arguments.options);
-    call.run(arguments.deadline, &ChildOutput::on_stderr(context.quiet), &stopped)?;
+    call.run(arguments.deadline, &context.child_output(), &stopped)?;
     let report = board.map(|target| greeted(&target, arguments.deadline, &stop, &stopped)).transpose()?;
     let compared = match (&report, &record) {
         (Some(report), Some(record)) => compare(report, record)?,

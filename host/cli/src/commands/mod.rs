@@ -31,9 +31,11 @@ use crate::arguments::given;
 use crate::call_error::CallError;
 use crate::console;
 use crate::exit::Exit;
+use crate::progress::{self, ChildOutput};
 use crate::settings::Settings;
 use halfrow::board::{BoardError, OpenFailed};
 use halfrow::link::OpenError;
+use halfrow::progress::Progress;
 use halfrow::reference;
 use halfrow::run::{Misfit, WithinError};
 
@@ -51,6 +53,22 @@ pub struct Context {
     pub quiet: bool,
     /// Whether the result is wanted as JSON.
     pub json: bool,
+}
+
+impl Context {
+    /// Where a run tells its progress: stderr, unless nobody is to see it or a program reads the result.
+    pub(crate) fn progress(&self) -> Box<dyn Progress> {
+        progress::for_stderr(self.hides_progress())
+    }
+
+    /// Where the output of a program that this one starts is shown, by the same rule.
+    fn child_output(&self) -> ChildOutput {
+        ChildOutput::on_stderr(self.hides_progress())
+    }
+
+    fn hides_progress(&self) -> bool {
+        self.quiet || self.json
+    }
 }
 
 /// A call of the program.
@@ -252,4 +270,17 @@ fn json_text(result: &impl serde::Serialize) -> Result<String, Failure> {
 /// Prints a result, the only output of the command.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     console::print(text).map_err(Failure::error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_is_hidden_from_who_wants_none_and_from_programs() {
+        for (quiet, json, hidden) in [(false, false, false), (true, false, true), (false, true, true)] {
+            let context = Context { settings: Settings::default(), settings_file: None, quiet, json };
+            assert_eq!(matches!(context.child_output(), ChildOutput::Nothing), hidden, "{quiet} {json}");
+        }
+    }
 }

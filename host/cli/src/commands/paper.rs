@@ -10,13 +10,14 @@ use super::{Context, Failure};
 use crate::arguments::board::{self, BoardArguments, Replays};
 use crate::arguments::given::{Decider, Given};
 use crate::call_error::CallError;
+use crate::console;
 use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::settings::Settings;
-use crate::{console, progress};
 use halfrow::board::Board;
 use halfrow::call::Files;
 use halfrow::frames::preview::RgbImage;
+use halfrow::progress::Progress;
 use halfrow_lab::paper::{
     self, Claim, Exhibit, Folder, Item, MarkedError, MarkedPhotograph, Material, Outcome, PaperError,
     TestedBoard,
@@ -77,7 +78,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     if uses_board {
         material.board = Some(arguments.open(&context.settings)?);
     }
-    let exhibits = make(&items, &mut material, context.quiet);
+    let exhibits = make(&items, &mut material, context.progress().as_ref());
     // Whatever has happened, the next run must find the board free.
     material.board.iter_mut().for_each(TestedBoard::close);
     let exhibits = exhibits?;
@@ -92,12 +93,15 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     Ok(exit)
 }
 
-fn make(items: &[Item], material: &mut Material<'_>, quiet: bool) -> Result<Vec<Exhibit>, PaperError> {
-    let watched = progress::for_stderr(quiet);
+fn make(
+    items: &[Item],
+    material: &mut Material<'_>,
+    watched: &dyn Progress,
+) -> Result<Vec<Exhibit>, PaperError> {
     watched.rows_expected(items.iter().map(|&item| material.rows(item)).sum());
     let made = items.iter().map(|&item| {
         watched.frame(item.title());
-        material.exhibit(item, watched.as_ref())
+        material.exhibit(item, watched)
     });
     let made = made.collect();
     watched.done();
