@@ -22,6 +22,7 @@ pub(crate) struct Given {
 
 /// What makes options void.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(test, derive(clap::ValueEnum))]
 pub(crate) enum Decider {
     /// A recording that is judged again.
     Recording,
@@ -248,6 +249,8 @@ impl Args for Given {
 
 #[cfg(test)]
 mod tests {
+    use clap::ValueEnum as _;
+
     use super::*;
     use crate::commands::Cli;
 
@@ -298,21 +301,21 @@ mod tests {
 
     #[test]
     fn options_that_are_void_exist() {
-        for (decider, known) in [
-            (Decider::Record, options("verify")),
-            (Decider::List, options("verify")),
-            (Decider::Tables, options("verify")),
-            (Decider::Model, options("correct")),
-            (Decider::NoFrameFile, options("correct")),
-            (Decider::Headerless, options("correct")),
-            (Decider::MadeFrames, options("frames")),
-            (Decider::MadeTables, options("tables")),
-            (Decider::ShownLens, options("lens")),
-            (Decider::NoBoardItem, options("paper")),
-            (Decider::NoPhotographItem, options("paper")),
-            (Decider::NoFigure4, options("paper")),
-            (Decider::NoSynthesisItem, options("paper")),
-        ] {
+        for decider in Decider::value_variants() {
+            let command = match decider {
+                Decider::Recording | Decider::Record | Decider::List | Decider::Tables | Decider::Within => {
+                    "verify"
+                }
+                Decider::Model | Decider::NoFrameFile | Decider::Headerless => "correct",
+                Decider::MadeFrames => "frames",
+                Decider::MadeTables => "tables",
+                Decider::ShownLens => "lens",
+                Decider::NoBoardItem
+                | Decider::NoPhotographItem
+                | Decider::NoFigure4
+                | Decider::NoSynthesisItem => "paper",
+            };
+            let known = options(command);
             assert!(decider.voids().iter().all(|id| known.iter().any(|known| known == id)), "{decider:?}");
         }
     }
