@@ -1,7 +1,7 @@
 //! Progress of a long run: a bar on a terminal, plain lines elsewhere, or nothing.
 
 use std::fmt::Write;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -83,6 +83,8 @@ fn seconds_left(rows: u64, expected: u64, time: Duration) -> Option<f64> {
 /// A bar with rate and time left.
 struct Bar {
     bar: ProgressBar,
+    /// Whether its style is that of a soak. Its length does not tell, since there may be as many rows.
+    shows_soak: AtomicBool,
     minutes: Minutes,
 }
 
@@ -94,7 +96,7 @@ impl Bar {
             ProgressStyle::with_template("{spinner} {msg}")
                 .unwrap_or_else(|_| ProgressStyle::default_spinner()),
         );
-        Self { bar, minutes: Minutes::default() }
+        Self { bar, shows_soak: AtomicBool::new(false), minutes: Minutes::default() }
     }
 }
 
@@ -116,6 +118,7 @@ impl Progress for Bar {
 
 impl Bar {
     fn expect(&self, rows: u64) {
+        self.shows_soak.store(false, Ordering::Relaxed);
         let template = "{bar:30} {pos}/{len} rows  {rate}{left}  {msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
             let rate = |state: &ProgressState, text: &mut dyn Write| {
@@ -135,7 +138,7 @@ impl Bar {
 
     fn soaked(&self, soaked: &Soaked) {
         let (words, minute) = self.minutes.words(soaked);
-        if self.bar.length() != Some(SOAK_STEPS)
+        if !self.shows_soak.swap(true, Ordering::Relaxed)
             && let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %  {msg}")
         {
             self.bar.set_style(style);
