@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use clap::Args;
-use halfrow_program::number::seconds;
+use halfrow_program::number::{seconds, whole_number};
 use serde::Serialize;
 use serde_json::json;
 
@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds(0.001..=86_400.0))]
     seconds: Duration,
     /// Seed of what is sent
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    #[arg(long, value_name = "SEED", default_value_t = 1, value_parser = whole_number())]
     seed: u64,
     #[command(flatten)]
     board: BoardArguments,
@@ -153,6 +153,16 @@ fn rate(rate: &Rate) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::commands::Cli;
+
+    #[test]
+    fn a_wrong_seed_is_refused_in_the_words_of_verify() {
+        let said = |command| {
+            let error = Cli::line().try_get_matches_from(["halfrow", command, "--seed", "x"]).unwrap_err();
+            error.to_string().lines().next().unwrap().to_owned()
+        };
+        assert_eq!(said("link"), said("verify"));
+    }
 
     #[test]
     fn the_limit_is_printed_as_it_was_given() {
