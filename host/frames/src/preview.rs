@@ -103,19 +103,6 @@ pub fn encode_png_rgb(image: &RgbImage, out: &mut impl Write) -> Result<(), Enco
     super::png::write(out, (image.width, image.height), (ColorType::Rgb, BitDepth::Eight), &image.data)
 }
 
-/// Writes a PNG of `width` x `height` grey pixels of one byte.
-///
-/// # Errors
-/// Those of the encoder, also when `data` has another length, and those of `out`.
-pub fn encode_png_grey(
-    width: usize,
-    height: usize,
-    data: &[u8],
-    out: &mut impl Write,
-) -> Result<(), EncodingError> {
-    super::png::write(out, (width, height), (ColorType::Grayscale, BitDepth::Eight), data)
-}
-
 /// Red, green and blue of all places in `row`.
 fn pixels(frame: &Frame, row: usize) -> Vec<[u16; 3]> {
     let last = frame.width() - 1;

@@ -55,7 +55,7 @@ pub(super) struct Arguments {
 
 fn item_parser() -> impl TypedValueParser<Value = Item> {
     let names = Item::ALL.map(|item| PossibleValue::new(item.name()).help(item.summary()));
-    PossibleValuesParser::new(names).try_map(|name| name.parse::<Item>())
+    PossibleValuesParser::new(names).try_map(|name| Item::named(&name).ok_or(name))
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {

@@ -1,7 +1,5 @@
 //! The items of the paper.
 
-use std::str::FromStr;
-
 /// A figure, a table or a claim of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Item {
@@ -28,13 +26,6 @@ pub enum Item {
     /// The resources of the FPGA, from the synthesis report.
     Resources,
 }
-
-/// A name that no item has.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "`{0}` is no item of the paper; it has fig3, fig4, fig5, fig6, fig8, fig12, verticals, residuals, table1, delay and resources"
-)]
-pub struct UnknownItem(pub String);
 
 /// The words for an item.
 struct Words {
@@ -165,6 +156,12 @@ impl Item {
         Self::Resources,
     ];
 
+    /// The one with this name, if any.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|item| item.name() == name)
+    }
+
     fn words(self) -> &'static Words {
         &WORDS[self as usize]
     }
@@ -203,14 +200,5 @@ impl Item {
     #[must_use]
     pub fn needs_photographs(self) -> bool {
         matches!(self, Self::Fig12 | Self::Table1)
-    }
-}
-
-impl FromStr for Item {
-    type Err = UnknownItem;
-
-    fn from_str(name: &str) -> Result<Self, UnknownItem> {
-        let found = Self::ALL.into_iter().find(|item| item.name() == name);
-        found.ok_or_else(|| UnknownItem(name.to_owned()))
     }
 }
