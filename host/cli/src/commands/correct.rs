@@ -24,7 +24,7 @@ use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::settings::Settings;
 use halfrow::call::Files;
-use halfrow::frames::{self, Format, Orientation, ReadOptions, Scene, WriteError, preview};
+use halfrow::frames::{self, Format, Orientation, ReadOptions, Scene, WriteError, parallel, preview};
 use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
 use places::{Places, Wanted};
@@ -129,8 +129,12 @@ impl Job<'_> {
     /// Checks, before anything is written, that all files exist and have the right size. Says on stderr how pictures are fitted.
     fn check(&self, quiet: bool) -> anyhow::Result<()> {
         let files = self.inputs.iter().filter(|input| input.can_be_read_twice());
-        for (input, path) in files.filter_map(|input| Some((input, input.file()?))) {
-            tell_fitting(path, input.rows(&self.how, &self.scene)?.fitting(), quiet);
+        let files: Vec<_> = files.filter_map(|input| Some((input, input.file()?))).collect();
+        // Most formats are decoded whole for this.
+        let fittings =
+            parallel::map(&files, |_, (input, _)| anyhow::Ok(input.rows(&self.how, &self.scene)?.fitting()));
+        for ((_, path), fitting) in files.iter().zip(fittings) {
+            tell_fitting(path, fitting?, quiet);
         }
         Ok(())
     }
