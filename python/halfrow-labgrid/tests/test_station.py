@@ -142,7 +142,7 @@ def hung(lab, station, request):
     with slow.at_work() as running:
         running.judge("1", "CAT00001")
         running.wait(lambda news: news["news"] == "doing" and news["rows"])
-        assert lab.holder(request.param) == "halfrow-12-1"
+        assert lab.holder(request.param) == "halfrow-12.1"
         yield slow, running
 
 
@@ -160,7 +160,7 @@ def test_a_place_that_even_its_holder_could_not_give_back_is_free_when_the_stati
     os.kill(holder, signal.SIGKILL)
     running.process.send_signal(signal.SIGKILL)
     running.process.wait()
-    assert lab.holder("cam-second") == "halfrow-12-1", "nobody else can"
+    assert lab.holder("cam-second") == "halfrow-12.1", "nobody else can"
     with slow.at_work() as again:
         again.wait(lambda news: news["news"] == "lane" and news["state"] == "READY")
         assert not lab.holder("cam-second")

@@ -104,9 +104,9 @@ impl Place {
     /// The place `name` for this lane of the station, through `labgrid`.
     #[must_use]
     pub fn new(name: String, station: &str, lane: &str, labgrid: Labgrid) -> Self {
-        let user = format!("halfrow-{station}-{lane}");
-        // labgrid splits users' names at slashes.
-        let user = user.chars().map(|one| if one.is_ascii_alphanumeric() { one } else { '-' }).collect();
+        // labgrid splits users' names at slashes. The dot, which neither name keeps, tells where the lane's begins.
+        let plain = |name: &str| name.replace(|one: char| !one.is_ascii_alphanumeric(), "-");
+        let user = format!("halfrow-{}.{}", plain(station), plain(lane));
         Self { name, user, labgrid, leaving: Arc::default() }
     }
 
@@ -159,6 +159,6 @@ mod tests {
             Labgrid { program: PROGRAM.into(), coordinator: None, deadline: Duration::from_secs(30) };
         let call = Place::new("cam-1".to_owned(), "Linie 4/Prüfplatz", "1", labgrid).call("hold");
         let arguments: Vec<_> = call.get_args().map(|word| word.to_string_lossy()).collect();
-        assert_eq!(arguments, ["hold", "--place", "cam-1", "--user", "halfrow-Linie-4-Pr-fplatz-1"]);
+        assert_eq!(arguments, ["hold", "--place", "cam-1", "--user", "halfrow-Linie-4-Pr-fplatz.1"]);
     }
 }

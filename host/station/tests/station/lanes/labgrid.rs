@@ -49,8 +49,8 @@ fn written(station: &Station, lines: usize) -> Vec<String> {
     })
 }
 
-const FREE: &str = "free --place cam-1 --user halfrow-12-1 --coordinator bench:20408";
-const HOLD: &str = "hold --place cam-1 --user halfrow-12-1 --coordinator bench:20408";
+const FREE: &str = "free --place cam-1 --user halfrow-12.1 --coordinator bench:20408";
+const HOLD: &str = "hold --place cam-1 --user halfrow-12.1 --coordinator bench:20408";
 
 #[test]
 fn the_board_of_a_place_is_judged_where_labgrid_says_and_the_place_given_back() {
