@@ -56,6 +56,7 @@ fn a_board_of_a_kind_is_waited_for_and_given_back() {
 #[test]
 fn a_call_that_is_wrong_or_only_lists_waits_for_no_board() {
     let folder = leased_by(&LEASES.replace("BOARD", "mock"));
+    folder.write("frame.pgm", format!("P5 64 2 255\n{}", "x".repeat(128)));
     let call = |command: &str, more: &[&str]| {
         let mut call = Command::new(folder.path().join("halfrow"));
         call.current_dir(folder.path()).args([command, "--quiet", "--board", "pool:ulx3s"]).args(more);
@@ -67,6 +68,9 @@ fn a_call_that_is_wrong_or_only_lists_waits_for_no_board() {
         ("verify", &["--reconnect=-1"]),
         ("verify", &["--timeout", "0"]),
         ("verify", &["--report", "lease"]),
+        ("correct", &["frame.pgm", "--width", "64", "--height", "2", "-o", "out.pgm", "--timeout", "0"]),
+        ("info", &["--timeout", "0"]),
+        ("link", &["--timeout", "0"]),
         ("soak", &["--frames", "3", "--reconnect=-1"]),
         ("soak", &["--frames", "3", "--report", "lease"]),
     ] {

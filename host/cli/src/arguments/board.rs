@@ -140,6 +140,7 @@ impl BoardArguments {
     /// The board that is named, or the one that was leased from the pool that is named. The first call waits for that, so
     /// everything else that the program is called with must have been checked.
     pub(crate) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
+        self.timeout(settings)?;
         pool::resolved(self.named(settings)?).map_err(Failure::error)
     }
 
