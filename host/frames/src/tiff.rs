@@ -115,7 +115,7 @@ fn limits() -> Limits {
 /// The decoder's `error` as one of ours.
 fn refused(error: TiffError) -> DecodeError {
     match error {
-        TiffError::UnsupportedError(_) | TiffError::LimitsExceeded => unsupported("this kind of TIFF"),
+        TiffError::UnsupportedError(_) => unsupported("this kind of TIFF"),
         other => DecodeError::Tiff(other),
     }
 }

@@ -222,6 +222,15 @@ fn no_size_that_is_read_at_all_is_beyond_the_decoder() {
     }
 }
 
+#[test]
+fn a_strip_of_an_impossible_length_is_damage() {
+    let mut file = oriented(1, 3, 8);
+    let length = 8 + 2 + 9 * 12 + 8;
+    file[length..length + 4].copy_from_slice(&[0xff; 4]);
+    let error = decode(&file, &options(BitDepth::Eight)).unwrap_err().to_string();
+    assert!(error.starts_with("the TIFF is damaged: "), "{error}");
+}
+
 /// With a predictor for numbers that are no whole ones in the place of the orientation.
 #[test]
 fn a_kind_of_tiff_that_the_decoder_does_not_know_is_not_called_damaged() {
