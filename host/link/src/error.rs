@@ -174,8 +174,7 @@ fn instead_of(kind: &str) -> String {
         return format!("for a serial port write serial:/dev/{kind}");
     }
     if kind == "pool" {
-        return "only the commands that judge or correct take a board of a pool; name the board itself here"
-            .to_owned();
+        return "a board of a pool cannot be named here, so name the board itself".to_owned();
     }
     format!("choose from {}", kinds::forms().join(", "))
 }

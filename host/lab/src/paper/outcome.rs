@@ -11,7 +11,7 @@ pub enum Outcome {
     Accepted,
     /// Every number is accepted, but something could not be tried.
     InPart,
-    /// Nothing could be tried, or each item only in part.
+    /// Of no item could everything be tried.
     NothingTried,
     /// A number is not accepted, by a fault of the reproduction.
     Missed,

@@ -286,7 +286,7 @@ fn starts(text: &LaneText, board: &LaneBoard) -> Result<Starts, Fault> {
     }
     let [scan, button, presence] = [StartText::Scan, StartText::Button, StartText::Presence].map(has);
     if !scan && !button && !board.is_pluggable() {
-        let what = format!("the board `{board}` is never plugged in, so nothing starts this lane");
+        let what = format!("nobody sees the board `{board}` being plugged in, so nothing starts this lane");
         return Err(Fault::wrong(start.span().start, what, "name scan or button"));
     }
     Ok(Starts { scan, button, presence })

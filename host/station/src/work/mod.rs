@@ -94,7 +94,8 @@ impl WorkError {
         matches!(self, Self::Run(RunError::PlanFile(_)))
     }
 
-    /// Whether the station's own store fails, so that another job would get no further.
+    /// Whether the station's own store fails, or the plant where it had to be asked first, so that another job would get no
+    /// further.
     #[must_use]
     pub(crate) const fn is_of_store(&self) -> bool {
         matches!(

@@ -234,17 +234,17 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "\"mock,serial=1\"\n",
         "\"mock,serial=1\"\nstart = [\"presence\"]\n",
-        "station.toml:25: the board `mock,serial=1` is never plugged in, so nothing starts this lane; name scan or button",
+        "station.toml:25: nobody sees the board `mock,serial=1` being plugged in, so nothing starts this lane; name scan or button",
     ),
     (
         "\"mock,serial=1\"\n",
         "\"tcp:bench:3001\"\nstart = [\"presence\"]\n",
-        "station.toml:25: the board `tcp:bench:3001` is never plugged in",
+        "station.toml:25: nobody sees the board `tcp:bench:3001` being plugged in",
     ),
     (
         "\"mock,serial=1\"\n",
         "\"labgrid:rack-3\"\nstart = [\"presence\"]\n",
-        "station.toml:25: the board `labgrid:rack-3` is never plugged in",
+        "station.toml:25: nobody sees the board `labgrid:rack-3` being plugged in",
     ),
     ("{lane}", "{line}", "station.toml:28: nothing is known that is called {line}; write one of {lane}"),
     ("./print", "./brint", "there is no program"),
