@@ -68,7 +68,7 @@ fn boards_agree(front: Front, cases: u64) {
         rows += played.latencies.len() / 2;
     }
     // On average, nine frames in ten cases (of two frames each) have a grid, and in three of ten cases the datapath changes.
-    assert!(build.grids.is_none() || grids >= cases as usize / 2 && changes >= cases as usize / 10);
+    assert!(build.grids.is_none() || grids >= cases as usize / 2 && changes >= (cases as usize).div_ceil(10));
     println!(
         "model, mock and {front:?} agree: {cases} cases, {rows} rows, {samples} samples; {grids} frames behind a grid, and in \
          {changes} cases another datapath from one frame to the next"
