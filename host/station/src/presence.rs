@@ -38,23 +38,38 @@ pub(crate) fn chips(devices: &Path) -> Vec<Chip> {
     chips
 }
 
-/// Whether something is plugged in at `board`. A board that is not plugged in anywhere, such as `tcp:` or `mock`,
-/// always counts as present.
-#[must_use]
-pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
-    match (board.kind.as_str(), board.address.as_deref()) {
-        ("serial", Some(path)) => Path::new(path).exists(),
-        ("usb", Some(name)) => {
-            chips(devices).iter().any(|chip| chip.place == name || chip.serial.as_deref() == Some(name))
-        }
-        _ => true,
+/// What is plugged in where a board is.
+enum Plug<'a> {
+    /// A serial port at this path.
+    Port(&'a str),
+    /// A USB chip with this name.
+    Chip(&'a str),
+}
+
+/// What is plugged in for `board`; none if nothing is, as for `tcp:` or `mock`.
+fn plug(board: &Target) -> Option<Plug<'_>> {
+    match (board.kind.as_str(), board.address.as_deref()?) {
+        ("serial", path) => Some(Plug::Port(path)),
+        ("usb", name) => Some(Plug::Chip(name)),
+        _ => None,
     }
 }
 
-/// Whether there is a device that can be plugged in and out at `board`, so that it may be absent.
+/// Whether something is plugged in at `board`. A board that is not plugged in anywhere always counts as present.
+#[must_use]
+pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
+    plug(board).is_none_or(|plug| match plug {
+        Plug::Port(path) => Path::new(path).exists(),
+        Plug::Chip(name) => {
+            chips(devices).iter().any(|chip| chip.place == name || chip.serial.as_deref() == Some(name))
+        }
+    })
+}
+
+/// Whether `board` is plugged in and out, so that it may be absent.
 #[must_use]
 pub(crate) fn is_pluggable(board: &Target) -> bool {
-    matches!(board.kind.as_str(), "serial" | "usb") && board.address.is_some()
+    plug(board).is_some()
 }
 
 /// Whether both names are of one board, as far as they and what is plugged in say. A chip that `usb:` names has one board,
