@@ -90,8 +90,8 @@ impl Tables {
     fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let format = TableFormat::of(&path).map_err(errors::input)?;
         outputs::check_files(format.places(&path), overwrite)?;
-        let Chosen { tables, kernel, .. } = self.chosen.clone();
-        let file = TableFile { tables, kernel, about: self.about.clone() };
+        let Chosen { tables, kernel, .. } = &self.chosen;
+        let file = TableFile { tables: tables.clone(), kernel: kernel.clone(), about: self.about.clone() };
         format.write(&file, &path, overwrite).map_err(errors::failed)
     }
 

@@ -11,7 +11,7 @@ use halfrow_model::{BitDepth, Geometry, GridShape, Kernel, TableSet, WEIGHT_NAME
 use halfrow_protocol::message::Datapath;
 
 use super::text::{self, quoted};
-use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath, datapath_of};
+use super::{DATAPATH, MemError, Place, TableFileError, TableFormat, WrongDatapath, datapath_of};
 use crate::call::Input;
 use halfrow_files::written_aside::{Aside, Claim, WriteAsideError};
 
@@ -44,7 +44,7 @@ pub fn paths(path: &Path) -> [PathBuf; 2] {
 
 /// Whether `path` ends in `.mem`.
 pub(super) fn is_name(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mem"))
+    TableFormat::of(path) == Ok(TableFormat::Mem)
 }
 
 /// The name that both files share if `path` looks like the name of one of them; but `path` itself if that is what both files
