@@ -21,6 +21,17 @@ pub enum On {
     MockOnly,
 }
 
+/// How much of a scenario the simulated board without pins takes. `scripts/soak pins` has it take all, through its pins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnSim {
+    /// All.
+    Whole,
+    /// Rows alone: bursts would tell of the Verilog what those of others do, and take as long as all the rest of a run.
+    Stepped,
+    /// Nothing: it takes long, or differs from others in what the Verilog does not know of.
+    Nothing,
+}
+
 /// A board, a call, and its expected result.
 #[derive(Clone, Copy, Debug)]
 pub struct Scenario {
@@ -40,11 +51,10 @@ pub struct Scenario {
     pub sentence: &'static str,
     /// What it may say instead where host and board both keep real time, since then it depends on which of them is late.
     pub when_late: &'static [&'static str],
-    /// Whether it takes ten seconds and more behind an emulated chip, or simulated. Then it is simulated with pins alone, by
-    /// `scripts/soak pins`.
+    /// Whether it takes ten seconds and more behind an emulated chip, or simulated.
     pub is_slow: bool,
-    /// Whether it goes without bursts on the simulated board without pins, where they take as long as all the rest of a run.
-    pub is_stepped_on_sim: bool,
+    /// How much of it the simulated board takes without pins.
+    pub on_sim: OnSim,
 }
 
 /// A scenario that did not end as expected.
@@ -94,8 +104,8 @@ impl Scenario {
     /// Whether it makes sense on `board`, a target.
     #[must_use]
     pub fn suits(&self, board: &str) -> bool {
-        let is_too_slow = self.is_slow && is_sim_without_pins(board);
-        !is_too_slow
+        let is_left_out = self.on_sim == OnSim::Nothing && is_sim_without_pins(board);
+        !is_left_out
             && match self.on {
                 On::AnyBoard => true,
                 On::OwnWire => is_in_process(board),
@@ -110,12 +120,12 @@ impl Scenario {
 
     /// The same scenario, which takes long.
     pub(crate) const fn slow(self) -> Self {
-        Self { is_slow: true, ..self }
+        Self { is_slow: true, ..self.on_sim(OnSim::Nothing) }
     }
 
-    /// The same scenario, whose bursts would tell of the Verilog what those of others do.
-    pub(crate) const fn stepped_on_sim(self) -> Self {
-        Self { is_stepped_on_sim: true, ..self }
+    /// The same scenario, of which the simulated board takes so much.
+    pub(crate) const fn on_sim(self, on_sim: OnSim) -> Self {
+        Self { on_sim, ..self }
     }
 
     /// The same scenario for other boards.
@@ -152,7 +162,8 @@ impl Scenario {
     /// Like [`Self::run`].
     pub fn judge(&self, target: &str, board: &str) -> Result<Value, Box<Surprise>> {
         let smaller = if kind(target) == "sim" && !self.has_own_size() { SMALLER } else { &[] };
-        let stepped = if self.is_stepped_on_sim && is_sim_without_pins(target) { STEPPED } else { &[] };
+        let stepped =
+            if self.on_sim == OnSim::Stepped && is_sim_without_pins(target) { STEPPED } else { &[] };
         let arguments = self.arguments.iter().chain(smaller).chain(stepped).copied();
         let ended = halfrow(["verify", "--json", "--board", target].into_iter().chain(arguments));
         let said = ended.json();

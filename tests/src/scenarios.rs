@@ -12,7 +12,7 @@ pub use misfits::MISFITS;
 pub use poor_links::{HOPELESS_LINKS, REPAIRED_LINKS, SLOW_LINKS};
 pub use sound_boards::SOUND_BOARDS;
 
-use crate::scenario::{On, Scenario};
+use crate::scenario::{On, OnSim, Scenario};
 
 /// Every scenario.
 pub fn all() -> impl Iterator<Item = &'static Scenario> {
@@ -38,17 +38,6 @@ const fn expect(
 ) -> Scenario {
     // Options describe a mock, unless the scenario says otherwise.
     let on = if options.is_empty() { On::AnyBoard } else { On::MockOnly };
-    let (is_slow, is_stepped_on_sim) = (false, false);
-    Scenario {
-        name,
-        on,
-        options,
-        arguments,
-        verdict,
-        exit_code,
-        sentence,
-        when_late: &[],
-        is_slow,
-        is_stepped_on_sim,
-    }
+    let (is_slow, on_sim) = (false, OnSim::Whole);
+    Scenario { name, on, options, arguments, verdict, exit_code, sentence, when_late: &[], is_slow, on_sim }
 }

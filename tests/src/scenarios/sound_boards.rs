@@ -1,38 +1,42 @@
 //! Sound boards: every build, kernel, depth, phase and size passes.
 
 use super::passes;
-use crate::scenario::{On, Scenario};
+use crate::scenario::{On, OnSim, Scenario};
 
 /// Boards without a fault, and links that are only slow.
 pub const SOUND_BOARDS: &[Scenario] = &[
     passes("the paper's system", "", &[]),
     passes("the paper's system with seven taps", "", &["--kernel", "keys", "--frame", "builtin:noise"]),
-    passes("nearest neighbour", "", &[W, "128", H, "72", R, "73.78", "--kernel", "nearest"]).stepped_on_sim(),
-    passes("linear", "", &[W, "128", H, "72", R, "73.78", "--kernel", "linear"]).stepped_on_sim(),
-    passes("Keys", "", &[W, "128", H, "72", R, "73.78", "--kernel", "keys"]).stepped_on_sim(),
+    passes("nearest neighbour", "", &[W, "128", H, "72", R, "73.78", "--kernel", "nearest"])
+        .on_sim(OnSim::Nothing),
+    passes("linear", "", &[W, "128", H, "72", R, "73.78", "--kernel", "linear"]).on_sim(OnSim::Nothing),
+    passes("Keys", "", &[W, "128", H, "72", R, "73.78", "--kernel", "keys"]).on_sim(OnSim::Nothing),
     passes("balanced Hermite", "", &[W, "128", H, "72", R, "73.78", "--kernel", "hermite-balanced"])
-        .stepped_on_sim(),
-    passes("five fitted taps", "", &[W, "128", H, "72", R, "73.78", "--kernel", "sharp5"]).stepped_on_sim(),
-    passes("seven fitted taps", "", &[W, "128", H, "72", R, "73.78", "--kernel", "sharp7"]).stepped_on_sim(),
+        .on_sim(OnSim::Nothing),
+    passes("five fitted taps", "", &[W, "128", H, "72", R, "73.78", "--kernel", "sharp5"])
+        .on_sim(OnSim::Nothing),
+    passes("seven fitted taps", "", &[W, "128", H, "72", R, "73.78", "--kernel", "sharp7"])
+        .on_sim(OnSim::Stepped),
     passes("five taps", ",taps=five", &[W, "128", H, "72", R, "73.78", "--kernel", "hermite"]),
     passes("five fitted taps on a board of five", ",taps=five", &[W, "128", H, "16", "--kernel", "sharp5"]),
-    passes("8 bits", "", &[W, "128", H, "72", R, "73.78", "--bits", "8"]).stepped_on_sim(),
+    passes("8 bits", "", &[W, "128", H, "72", R, "73.78", "--bits", "8"]).on_sim(OnSim::Stepped),
     passes("10 bits", "", &[W, "128", H, "72", R, "73.78", "--bits", "10", "--kernel", "keys"]),
     passes("a board of one depth", ",depths=10", &[W, "128", H, "16", "--bits", "10"]),
-    passes("RGGB", "", &[W, "128", H, "72", R, "73.78", "--phase", "rggb"]).stepped_on_sim(),
-    passes("BGGR", "", &[W, "128", H, "72", R, "73.78", "--phase", "bggr"]).stepped_on_sim(),
-    passes("GBRG", "", &[W, "128", H, "72", R, "73.78", "--phase", "gbrg"]).stepped_on_sim(),
+    passes("RGGB", "", &[W, "128", H, "72", R, "73.78", "--phase", "rggb"]).on_sim(OnSim::Stepped),
+    passes("BGGR", "", &[W, "128", H, "72", R, "73.78", "--phase", "bggr"]).on_sim(OnSim::Nothing),
+    passes("GBRG", "", &[W, "128", H, "72", R, "73.78", "--phase", "gbrg"]).on_sim(OnSim::Stepped),
     passes("a centre between two columns", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "40.5"]),
-    passes("a centre on a column", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "88"]).stepped_on_sim(),
+    passes("a centre on a column", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "88"])
+        .on_sim(OnSim::Stepped),
     passes("a centre at the left edge", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "0"])
-        .stepped_on_sim(),
+        .on_sim(OnSim::Stepped),
     passes("a centre above the frame", "", &[W, "128", H, "16", R, "73.78", "--centre-y", "-50"])
-        .stepped_on_sim(),
-    passes("rows outside the image circle", "", &[W, "128", H, "72", R, "20"]).stepped_on_sim(),
-    passes("the smallest frame", "", &[W, "64", H, "1"]).stepped_on_sim(),
+        .on_sim(OnSim::Stepped),
+    passes("rows outside the image circle", "", &[W, "128", H, "72", R, "20"]).on_sim(OnSim::Stepped),
+    passes("the smallest frame", "", &[W, "64", H, "1"]).on_sim(OnSim::Stepped),
     passes("the widest frame", ",max-width=2592", &[W, "2592", H, "8", R, "4"]),
     passes("the highest frame", "", &[W, "64", H, "2048", R, "1030", "--frame", "builtin:noise"])
-        .stepped_on_sim()
+        .on_sim(OnSim::Stepped)
         .slow(),
     passes(
         "the full sensor behind a grid of 4,096 entries",
@@ -53,9 +57,9 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("a serial line", ",speed=46080", &[W, "128", H, "16"]).on(On::OwnWire).slow(),
     passes("a distant board", ",speed=1200000,delay=0.01", &[W, "128", H, "16"]).on(On::OwnWire).slow(),
     passes("a pipe without a buffer", ",buffer=0,speed=100000", &[W, "128", H, "16"]).on(On::OwnWire),
-    passes("every frame three times", "", &[W, "128", H, "16", "--repeat", "3"]).stepped_on_sim(),
-    passes("ready to stop at a difference", "", &[W, "128", H, "16", "--fail-fast"]).stepped_on_sim(),
-    passes("another seed", "", &[W, "128", H, "16", "--seed", "18446744073709551615"]).stepped_on_sim(),
+    passes("every frame three times", "", &[W, "128", H, "16", "--repeat", "3"]).on_sim(OnSim::Stepped),
+    passes("ready to stop at a difference", "", &[W, "128", H, "16", "--fail-fast"]).on_sim(OnSim::Nothing),
+    passes("another seed", "", &[W, "128", H, "16", "--seed", "18446744073709551615"]).on_sim(OnSim::Nothing),
 ];
 
 const SENSOR: &[&str] =
