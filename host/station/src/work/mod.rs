@@ -305,12 +305,12 @@ impl Work<'_> {
         }
     }
 
-    /// Tells the plant of this station, from which it takes nothing while another one has its name. Waits for a plant that is
-    /// away if it `may_be_away`.
+    /// Tells the plant of this station, from which it takes nothing while another one has its name, and compares the clocks before
+    /// the first run. Waits for a plant that is away if it `may_be_away`.
     ///
     /// # Errors
     /// [`PlantError`] when it is there and refuses.
-    pub(crate) fn introduce(
+    pub fn introduce(
         &self,
         station: &Introduction,
         may_be_away: bool,
@@ -322,7 +322,7 @@ impl Work<'_> {
                     tracing::warn!("no job is taken for now: {}", Said::of(&error));
                     rest(AWAY_MS, stop);
                 }
-                heard => return heard.map(drop),
+                heard => return heard.map(|clock| self.store.with(|store| store.heard_plant(clock))),
             }
         }
         Ok(())

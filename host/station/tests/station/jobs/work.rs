@@ -4,13 +4,19 @@ use std::cell::{Cell, RefCell};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
+use halfrow::verdict::StoppedBy;
+use halfrow_station::run::RunError;
+use halfrow_station::store::{SINK_OF_PLANT, Store};
+use halfrow_station::work::WorkError;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::{any, job, plan, run_out, settings, shared};
 use crate::common::{Did, HANG, program, query, until};
+use crate::plant::clocks::FAST;
 use crate::plant::server::Server;
 
 fn work(server: &Server, name: &str) -> (tempfile::TempDir, Command) {
@@ -247,6 +253,28 @@ fn a_station_takes_no_job_while_another_one_has_its_name() {
         "{did:?}"
     );
     assert_eq!(server.rows("SELECT state, fence FROM job"), [["waiting", "0"]]);
+}
+
+/// Not only once the outbox, which is at work beside, has heard the plant's.
+#[test]
+fn a_worker_compares_the_clocks_before_its_first_run() {
+    let (server, _plant, _) = super::with_a_job();
+    server.client("plant").batch_execute(FAST).unwrap();
+    let folder = crate::common::folder();
+    let path = settings(&server, folder.path(), "12");
+    let settings = halfrow_station::settings::Settings::load_without_lanes(&path).unwrap();
+    let work = super::at_work(&settings, program().to_owned());
+    work.store.with(|store| store.sends_to(vec![SINK_OF_PLANT.to_owned()])).unwrap();
+    let origin = work.store.with(Store::origin).unwrap();
+    work.introduce(&settings.introduction(origin), false, &|| None).unwrap();
+    // Nothing sends the run if there is one.
+    let begun = Instant::now();
+    let stop = || (begun.elapsed() > Duration::from_secs(20)).then_some(StoppedBy::Person);
+    let refused = work.judge(work.claim().unwrap().unwrap(), &stop, &mut |_| ()).unwrap_err();
+    assert!(
+        matches!(&refused, WorkError::Run(RunError::NotBegun(why)) if why.to_string().contains("60 min apart"))
+    );
+    assert_eq!(server.rows("SELECT state, attempts FROM job"), [["waiting", "0"]]);
 }
 
 /// A standby that takes over is read-only until it has done so (PostgreSQL, appendix A: 25006).

@@ -15,7 +15,7 @@ use crate::history::made::{End, HOUR_MS, Made, Run};
 use crate::lanes::floor::SERIALS;
 
 /// Makes the server's clock an hour fast for whoever connects from now on.
-const FAST: &str = "CREATE FUNCTION public.clock_timestamp() RETURNS timestamptz LANGUAGE sql
+pub(crate) const FAST: &str = "CREATE FUNCTION public.clock_timestamp() RETURNS timestamptz LANGUAGE sql
     AS $$ SELECT pg_catalog.clock_timestamp() + interval '1 hour' $$;
     ALTER DATABASE plant SET search_path = public, pg_catalog";
 

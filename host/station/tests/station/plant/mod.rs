@@ -1,7 +1,7 @@
 //! The plant, on a real PostgreSQL server, and what stations send to it.
 
 mod checked;
-mod clocks;
+pub(crate) mod clocks;
 mod cut;
 mod figures;
 mod late;
