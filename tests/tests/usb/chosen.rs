@@ -41,7 +41,14 @@ fn boards_of_one_name_are_told_by_their_places() {
         let place = board.bus_name();
         assert!(ended.headline().contains(&format!("usb:{place} (")), "{ended:?}");
     }
-    assert_eq!(verify(&format!("usb:{}", second.bus_name())).code, Some(0));
+    let target = format!("usb:{}", second.bus_name());
+    let ended = verify(&target);
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert!(ended.json()["link"]["name"].as_str().unwrap().starts_with(&target), "{ended:?}");
+    let listed = halfrow(["boards", "--json"]).json();
+    let targets: Vec<_> =
+        listed["boards"].as_array().unwrap().iter().filter_map(|board| board["target"].as_str()).collect();
+    assert!(targets.contains(&&*target), "{targets:?}");
 }
 
 #[test]

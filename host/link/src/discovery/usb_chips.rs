@@ -10,18 +10,18 @@ pub(crate) fn find() -> Vec<Found> {
         tracing::info!("{error}");
         Vec::new()
     });
-    boards.into_iter().map(look_at).collect()
+    boards.iter().map(|board| look_at(board, board.target(&boards))).collect()
 }
 
-fn look_at(board: UsbBoard) -> Found {
+fn look_at(board: &UsbBoard, target: String) -> Found {
     Found {
-        target: board.target(),
+        target,
         kind: BoardKind::Hardware,
         summary: board.to_string(),
-        access: access_to(&board),
-        device: Some(board.file),
+        access: access_to(board),
+        device: Some(board.file.clone()),
         names: Vec::new(),
-        usb: Some(board.device),
+        usb: Some(board.device.clone()),
         answer: None,
     }
 }

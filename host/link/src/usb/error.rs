@@ -145,12 +145,7 @@ fn there_are(found: &[UsbBoard]) -> String {
 }
 
 fn targets(found: &[UsbBoard]) -> String {
-    let is_unique = |board: &UsbBoard| {
-        found.iter().filter(|other| other.device.serial == board.device.serial).count() == 1
-    };
-    let name =
-        |board: &UsbBoard| if is_unique(board) { board.target() } else { format!("usb:{}", board.place) };
-    let lines: Vec<String> = found.iter().map(|board| format!("{} ({board})", name(board))).collect();
+    let lines: Vec<String> = found.iter().map(|board| format!("{} ({board})", board.target(found))).collect();
     lines.join(", ")
 }
 

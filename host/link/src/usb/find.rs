@@ -30,10 +30,12 @@ pub struct UsbBoard {
 }
 
 impl UsbBoard {
-    /// The target that names it.
-    #[must_use]
-    pub fn target(&self) -> String {
-        format!("usb:{}", self.device.serial.as_deref().unwrap_or(&self.place))
+    /// The target that names it among `all` that are plugged in: its serial number, or its place if it has none of its own.
+    pub(crate) fn target(&self, all: &[Self]) -> String {
+        let serial = self.device.serial.as_deref();
+        let own =
+            serial.filter(|_| all.iter().filter(|one| one.device.serial == self.device.serial).count() == 1);
+        format!("usb:{}", own.unwrap_or(&self.place))
     }
 
     /// Other programs that have opened the serial port that the system's driver made of the board's channel.
@@ -128,8 +130,8 @@ fn place(device: &Device<Context>) -> String {
     format!("{}-{}", device.bus_number(), ports.join("."))
 }
 
-/// The chip that `name` stands for: a serial number, a place, or nothing if there is only one high-speed chip.
-pub(super) fn choose(name: Option<&str>) -> Result<FtdiDevice, UsbError> {
+/// The chip that `name` stands for: a serial number, a place, or nothing if there is only one high-speed chip; and its target.
+pub(super) fn choose(name: Option<&str>) -> Result<(FtdiDevice, String), UsbError> {
     let all = all()?;
     let boards = |found: &[FtdiDevice]| found.iter().map(|found| found.board.clone()).collect();
     let everything: Vec<UsbBoard> = boards(&all);
@@ -139,7 +141,10 @@ pub(super) fn choose(name: Option<&str>) -> Result<FtdiDevice, UsbError> {
     };
     let mut meant: Vec<FtdiDevice> = all.into_iter().filter(is_meant).collect();
     match (meant.pop(), meant.is_empty(), name) {
-        (Some(found), true, _) => Ok(found),
+        (Some(found), true, _) => {
+            let target = name.map_or_else(|| found.board.target(&everything), |name| format!("usb:{name}"));
+            Ok((found, target))
+        }
         (Some(found), false, _) => {
             meant.push(found);
             Err(UsbError::Several(boards(&meant)))

@@ -30,7 +30,7 @@ use threads::Threads;
 use transport::{Libusb, Transport};
 
 use super::serial::{Holder, keepers};
-use super::{Link, LinkError, bytes_per_second};
+use super::{HEED, Link, LinkError, bytes_per_second};
 use crate::target::Target;
 use crate::{LineErrors, OpenError};
 
@@ -41,9 +41,6 @@ pub use transport::UsbFailure;
 
 /// What an FPGA with two synchronisers gets through an asynchronous FIFO: about 5 MB/s. The data sheet says 8.
 const FIFO_BYTES_PER_SECOND: f64 = 5e6;
-
-/// The longest wait, so that a request to stop is noticed. The waits of a run for frames made by the board are no longer either.
-const HEED: Duration = Duration::from_millis(250);
 
 /// A pipe through a channel of a chip.
 pub(crate) struct UsbLink {
@@ -66,14 +63,14 @@ impl UsbLink {
     /// [`OpenError`] when the target is no such target, or its chip cannot be opened.
     pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
         let options = asked(target)?;
-        let found = choose(target.address.as_deref())?;
-        let (chip, name) = (found.chip, found.board.target());
+        let (found, name) = choose(target.address.as_deref())?;
+        let chip = found.chip;
         let channel = options.channel.map_or(chip.usual_channel(), Channel);
         if channel.0 >= chip.channels() {
             let (channel, channels) = (channel.letter(), chip.channels());
             return Err(UsbError::NoChannel { chip: chip.name(), name, channel, channels }.into());
         }
-        Ok(Self::over(claim(&found, channel)?, chip, channel, &name, &options)?)
+        Ok(Self::over(claim(&found, channel, &name)?, chip, channel, &name, &options)?)
     }
 
     /// Makes the channel of the `chip` behind `transport` ready, which is called `name` in errors.
@@ -106,26 +103,25 @@ impl UsbLink {
 }
 
 /// Claims the channel's interface, unless another program has opened it or its serial port.
-fn claim(found: &FtdiDevice, channel: Channel) -> Result<Libusb, UsbError> {
-    let (chip, name) = (found.chip, found.board.target());
+fn claim(found: &FtdiDevice, channel: Channel, name: &str) -> Result<Libusb, UsbError> {
     for port in serial_ports(&found.board.place, channel) {
         if let Some(holders) = held(&port) {
             return Err(UsbError::Busy { what: port.display().to_string(), holders });
         }
     }
     let failed = |error| match error {
-        rusb::Error::Access => UsbError::NotPermitted { name: name.clone() },
+        rusb::Error::Access => UsbError::NotPermitted { name: name.to_owned() },
         rusb::Error::Busy => UsbError::Busy {
             what: format!("channel {} of {name}", channel.letter()),
             holders: keepers(&found.board.file),
         },
         other => {
             let source = transport::failure(other);
-            UsbError::Transfer { name: name.clone(), doing: "opening the device", source }
+            UsbError::Transfer { name: name.to_owned(), doing: "opening the device", source }
         }
     };
     let handle = found.device.open().map_err(failed)?;
-    Libusb::claim(handle, channel.0, chip.endpoints(channel)).map_err(failed)
+    Libusb::claim(handle, channel.0, found.chip.endpoints(channel)).map_err(failed)
 }
 
 /// The options of a target. Its address, if it has one, is a name; an empty one was forgotten.

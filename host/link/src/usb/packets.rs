@@ -5,7 +5,7 @@ use crate::LineErrors;
 const STATUS: usize = 2;
 
 /// Appends the data of `transfer`, which consists of packets of `packet` bytes, the last of which may be shorter. Counts the line
-/// errors of each packet if it `is_line`.
+/// errors of each packet with data if it `is_line`: chips repeat them in those that follow without.
 pub(super) fn strip(
     transfer: &[u8],
     packet: usize,
@@ -15,7 +15,7 @@ pub(super) fn strip(
 ) {
     for packet in transfer.chunks(packet) {
         if let Some((status, rest)) = packet.split_at_checked(STATUS) {
-            if is_line {
+            if is_line && !rest.is_empty() {
                 errors.count(status[1]);
             }
             data.extend_from_slice(rest);
@@ -55,8 +55,8 @@ mod tests {
     }
 
     #[test]
-    fn line_errors_of_every_packet_count() {
-        let mut transfer = vec![0; 1024 + 2];
+    fn line_errors_of_every_packet_with_data_count() {
+        let mut transfer = vec![0; 1024 + 3];
         (transfer[1], transfer[513], transfer[1025]) = (0x60 | 0x02, 0x60 | 0x08 | 0x80, 0x60 | 0x14);
         let expected = LineErrors { overrun: 1, parity: 1, framing: 1, breaks: 1 };
         assert_eq!(stripped(&transfer, 512).1, expected);
@@ -80,9 +80,20 @@ mod tests {
             (3, LineErrors { framing: 1, ..none }),
             (4, LineErrors { breaks: 1, ..none }),
         ] {
-            assert_eq!(stripped(&[0x01, 0x60 | 1 << bit], 64).1, expected);
+            assert_eq!(stripped(&[0x01, 0x60 | 1 << bit, 7], 64).1, expected);
             assert_eq!(expected.sum(), 1);
         }
+    }
+
+    /// As Linux's driver for these chips has it (drivers/usb/serial/ftdi_sio.c, ftdi_process_packet).
+    #[test]
+    fn an_error_that_is_repeated_without_data_counts_once() {
+        let packets = [[0x01, 0x60 | 0x08, 7].as_slice(), &[0x01, 0x60 | 0x08]];
+        let mut errors = LineErrors::default();
+        for packet in packets {
+            strip(packet, 64, &mut Vec::new(), true, &mut errors);
+        }
+        assert_eq!(errors.sum(), 1);
     }
 
     #[test]
