@@ -57,6 +57,10 @@ pub(crate) fn bytes_per_second(baud: u32) -> f64 {
     f64::from(baud) / 10.0
 }
 
+/// The longest wait of a link that takes real time, so that a request to stop is noticed. The waits of a run for frames made by the
+/// board are no longer either.
+pub(crate) const HEED: Duration = Duration::from_millis(250);
+
 /// A byte pipe to a board. It can be sent to another thread, so several boards can be judged at the same time.
 ///
 /// Both directions move in one call, so a host cannot deadlock with a board that waits to be read: what the board sends is taken

@@ -34,8 +34,9 @@ pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     let kind = kind(target)?;
     let link = (kind.open)(target)?;
     let again = target.clone();
-    // A recording would start again from its beginning.
-    let is_there_again = kind.board != BoardKind::Replay;
+    // A recording would start again from its beginning, and a waveform be written twice.
+    let is_there_again =
+        kind.board != BoardKind::Replay && !target.options.iter().any(|(key, _)| key == "trace");
     let reopen = is_there_again.then(|| Box::new(move || Ok(open(&again)?.link)) as Reopener);
     Ok(Candidate { target: target.to_string(), kind: kind.board, link, reopen })
 }

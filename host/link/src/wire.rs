@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use halfrow_pipe::{Broken, Endpoint, Pipe};
 
-use super::{Link, LinkError};
+use super::{HEED, Link, LinkError};
 
 /// A pipe to a board in this process.
 #[derive(Debug)]
@@ -37,6 +37,7 @@ where
         wait: Duration,
     ) -> Result<usize, LinkError> {
         let before = self.pipe.now();
+        let wait = if self.due.is_some() { wait.min(HEED) } else { wait };
         let moved = self.pipe.exchange(outgoing, incoming, wait);
         if let Some(due) = &mut self.due {
             let now = Instant::now();

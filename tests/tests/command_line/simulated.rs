@@ -26,3 +26,12 @@ fn a_waveform_is_written_and_never_over_another_file() {
     refused(&folder, &call, "run.vcd is there already");
     assert_eq!(folder.text("run.vcd"), waveform);
 }
+
+/// It would be refused, as a place that is taken.
+#[test]
+fn a_board_with_a_waveform_is_not_opened_again() {
+    let folder = Folder::new();
+    let target = format!("sim,trace={}", folder.path().join("run.vcd").display()).parse().unwrap();
+    assert!(halfrow::link::open(&target).unwrap().reopen.is_none());
+    assert!(halfrow::link::open(&"sim".parse().unwrap()).unwrap().reopen.is_some());
+}
