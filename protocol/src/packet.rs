@@ -12,10 +12,10 @@ pub(crate) const CRC: usize = 4;
 /// Bytes of a packet that are not payload.
 pub(crate) const OVERHEAD: usize = HEADER + CRC;
 
-/// The most bytes that a packet with `payload` bytes of payload takes on the wire, the zero after it included.
+/// The most bytes that a packet with `payload` bytes of payload takes on the wire, the zeros around it included.
 #[must_use]
 pub const fn wire_length(payload: usize) -> usize {
-    cobs::stuffed_length(OVERHEAD.saturating_add(payload)).saturating_add(1)
+    cobs::stuffed_length(OVERHEAD.saturating_add(payload)).saturating_add(2)
 }
 
 /// What a packet is about.
@@ -238,7 +238,7 @@ impl Encoder {
         alter(&mut self.packet);
         let crc = crc32fast::hash(&self.packet);
         self.packet.extend_from_slice(&crc.to_le_bytes());
-        wire.reserve(cobs::stuffed_length(self.packet.len()) + 2);
+        wire.reserve(wire_length(length));
         wire.push(0);
         cobs::stuff(&self.packet, wire);
         wire.push(0);
