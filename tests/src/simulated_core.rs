@@ -76,7 +76,6 @@ const STILL: CoreInputs = CoreInputs {
     step_write: false,
     node_write: false,
     table_bank: false,
-    table_read: false,
     width: 0,
     centre2: 0,
     prepare_row: 0,

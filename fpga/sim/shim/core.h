@@ -7,7 +7,7 @@
 struct CoreInputs {
     bool rst, enable;
     uint8_t depth;
-    bool prepare, prepare_bank, in_valid, in_start, step_write, node_write, table_bank, table_read;
+    bool prepare, prepare_bank, in_valid, in_start, step_write, node_write, table_bank;
     uint16_t width, centre2, prepare_row, in_sample, table_entry;
     uint32_t table_data[3];
 };
@@ -15,7 +15,6 @@ struct CoreInputs {
 struct CoreOutputs {
     bool prepared, out_valid, out_start, out_last, row_short, row_long, row_unprepared;
     uint16_t out_sample;
-    uint32_t step_port, node_port_0[3], node_port_1[3];
 };
 
 template <class Model>
@@ -32,7 +31,7 @@ void clock_core(Design<Model>& design, const CoreInputs& in, CoreOutputs& out) {
     model.step_write = in.step_write;
     model.node_write = in.node_write;
     model.table_bank = in.table_bank;
-    model.table_read = in.table_read;
+    model.table_read = 0;
     model.width = in.width;
     model.centre2 = in.centre2;
     model.prepare_row = in.prepare_row;
@@ -48,11 +47,6 @@ void clock_core(Design<Model>& design, const CoreInputs& in, CoreOutputs& out) {
     out.row_long = model.row_long;
     out.row_unprepared = model.row_unprepared;
     out.out_sample = model.out_sample;
-    out.step_port = model.step_port;
-    for (int word = 0; word < 3; ++word) {
-        out.node_port_0[word] = model.node_port_0[word];
-        out.node_port_1[word] = model.node_port_1[word];
-    }
     model.clk = 1;
     design.settle();
 }

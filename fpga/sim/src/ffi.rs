@@ -86,7 +86,10 @@ pub(crate) struct FifoOutputs {
 #[cfg(feature = "builds")]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
-#[expect(missing_docs, reason = "the ports of that name in fpga/rtl/core/halfrow_core.v")]
+#[expect(
+    missing_docs,
+    reason = "the ports of that name in fpga/rtl/core/halfrow_core.v, without those of read-back"
+)]
 pub struct CoreInputs {
     pub rst: bool,
     pub enable: bool,
@@ -98,7 +101,6 @@ pub struct CoreInputs {
     pub step_write: bool,
     pub node_write: bool,
     pub table_bank: bool,
-    pub table_read: bool,
     pub width: u16,
     pub centre2: u16,
     pub prepare_row: u16,
@@ -112,7 +114,10 @@ pub struct CoreInputs {
 #[cfg(feature = "builds")]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
-#[expect(missing_docs, reason = "the ports of that name in fpga/rtl/core/halfrow_core.v")]
+#[expect(
+    missing_docs,
+    reason = "the ports of that name in fpga/rtl/core/halfrow_core.v, without those of read-back"
+)]
 pub struct CoreOutputs {
     pub prepared: bool,
     pub out_valid: bool,
@@ -122,11 +127,6 @@ pub struct CoreOutputs {
     pub row_long: bool,
     pub row_unprepared: bool,
     pub out_sample: u16,
-    pub step_port: u32,
-    /// 80 bits in 32-bit words, least significant first.
-    pub node_port_0: [u32; 3],
-    /// The same for the other port.
-    pub node_port_1: [u32; 3],
 }
 
 /// The functions of one design.
