@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use halfrow::link::{Link, LinkError};
 
-/// A link whose exchanges `exchange` makes by means of `link`; in all else it is that link.
+/// A link whose exchanges `exchange` makes by means of `link`; its clock, speed and name are that link's.
 pub struct Through<F> {
     link: Box<dyn Link>,
     exchange: F,

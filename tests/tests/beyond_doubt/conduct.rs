@@ -294,7 +294,9 @@ fn a_window_that_stands_still_ends_the_run() {
 
 #[test]
 fn a_window_beyond_every_row_does_no_harm() {
-    for which in (0..400).step_by(5) {
+    let mut passed = 0;
+    let packets = (0..400).step_by(8);
+    for which in packets.clone() {
         let mut seen = 0;
         let report = judge_each(&System::TINY, move |toward, mut packet| {
             seen += usize::from(toward == Toward::Host);
@@ -304,7 +306,9 @@ fn a_window_beyond_every_row_does_no_harm() {
             packet
         });
         assert_ne!(report.verdict(), Verdict::Fail, "packet {which}: {}", report.headline());
+        passed += usize::from(report.verdict() == Verdict::Pass);
     }
+    assert!(2 * passed > packets.len(), "{passed} of {} pass", packets.len());
 }
 
 /// Only STATUS tells whether the link delivered a request twice.

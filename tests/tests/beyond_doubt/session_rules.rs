@@ -142,9 +142,7 @@ fn tables_must_stay_after_a_greeting() {
 }
 
 #[test]
-fn rows_that_are_asked_for_again_and_those_that_are_not_needed_must_be_counted() {
-    let report = counting(|status| Status { rows_repeated: 0, ..status });
-    assert_eq!(miscounted(&report), Counter::RowsRepeated);
+fn rows_that_are_not_needed_must_be_counted() {
     let report = counting(|status| Status { rows_unneeded: 0, ..status });
     assert_eq!(miscounted(&report), Counter::RowsUnneeded);
 }

@@ -49,11 +49,13 @@ fn hopeless_links_end_with_an_error() {
     let _ = run_all_on_serial_ports(&small(HOPELESS_LINKS));
 }
 
-/// Like boards that `HALFROW_TEST_BOARDS` names: one device, and one scenario after another.
+/// Like boards that `HALFROW_TEST_BOARDS` names: one device, and one scenario after another. On devices of their own each of them
+/// passes above.
 #[test]
-fn a_board_behind_a_device_takes_every_scenario_that_is_for_any_board() {
+fn a_board_behind_a_device_takes_one_scenario_after_another() {
     for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {
-        let scenarios = [small(SOUND_BOARDS), small(MISFITS)].concat();
+        let some = small(SOUND_BOARDS).into_iter().step_by(6);
+        let scenarios: Vec<_> = some.chain(small(MISFITS)).collect();
         assert!(run_each(&scenarios, &served.target()).len() > 1);
     }
 }
