@@ -64,7 +64,7 @@ pub(super) struct Guarded {
 pub(super) async fn every(State(app): State<App>, request: Request, next: Next) -> Response {
     let visit = app.stranger(request.headers());
     let is_ours = host(request.headers()).is_some_and(|host| app.access().address().is_host(host));
-    let mut response = if !app.access().has_people() && is_forwarded(request.headers()) {
+    let mut response = if app.access().is_open() && is_forwarded(request.headers()) {
         Trouble::new(&visit, StatusCode::MISDIRECTED_REQUEST, visit.say("trouble.proxied")).into_response()
     } else if is_ours {
         let late = || Trouble::new(&visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late"));
@@ -217,7 +217,7 @@ pub(super) async fn nothing_here(State(app): State<App>, headers: HeaderMap) -> 
     app.visit(&headers, false).await.map_or_else(|trouble| trouble, |visit| Trouble::missing(&visit))
 }
 
-/// Whether a proxy says that it forwards a request of somebody else, who need not be at this computer.
+/// Whether a proxy says that it forwards a request of somebody else, who need not be at this computer as whoever sees open pages is.
 fn is_forwarded(headers: &HeaderMap) -> bool {
     let names = ["forwarded", "via", "x-real-ip", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto"];
     names.iter().any(|name| headers.contains_key(*name))

@@ -235,17 +235,20 @@ fn whoever_is_logged_in_does_not_guess_the_badges_of_others_for_long() {
 
 /// A proxy that forwards the requests of others as if they came from this computer.
 #[test]
-fn a_station_without_people_takes_nothing_from_a_proxy() {
-    let station = Station::private(1);
-    let serving = station.serve();
-    let get = || serving.here().get("/");
-    assert_eq!(get().send().status, 200);
-    for name in ["Forwarded", "Via", "X-Real-IP", "X-Forwarded-For"] {
-        let answer = get().with(name, "192.0.2.2").send();
-        assert!(answer.status == 421 && answer.text().contains("[access]"), "{name}: {answer:?}");
-    }
-    // The control: where people log in, requests through a proxy are fine.
+fn a_station_whose_pages_are_open_takes_nothing_from_a_proxy() {
     let public = Station::public(1);
+    let listed =
+        Station::public(1).where_instead("station.toml", &format!("public = \"https://{PUBLIC}\""), "");
+    for station in [Station::private(1), listed] {
+        let serving = station.serve();
+        let get = || serving.here().get("/");
+        assert_eq!(get().send().status, 200);
+        for name in ["Forwarded", "Via", "X-Real-IP", "X-Forwarded-For"] {
+            let answer = get().with(name, "192.0.2.2").send();
+            assert!(answer.status == 421 && answer.text().contains("public"), "{name}: {answer:?}");
+        }
+    }
+    // The control: where the settings name the address of the proxy and people log in, requests through it are fine.
     let behind = public.serve();
     assert_eq!(behind.operator().get("/").with("X-Forwarded-For", "192.0.2.2").send().status, 200);
 }
