@@ -292,11 +292,10 @@ fn a_window_that_stands_still_ends_the_run() {
     }
 }
 
+/// Most end with an error, because the host then sends rows for which the board has no room.
 #[test]
-fn a_window_beyond_every_row_does_no_harm() {
-    let mut passed = 0;
-    let packets = (0..400).step_by(8);
-    for which in packets.clone() {
+fn a_window_beyond_every_row_makes_no_run_fail() {
+    for which in (0..400).step_by(8) {
         let mut seen = 0;
         let report = judge_each(&System::TINY, move |toward, mut packet| {
             seen += usize::from(toward == Toward::Host);
@@ -306,9 +305,7 @@ fn a_window_beyond_every_row_does_no_harm() {
             packet
         });
         assert_ne!(report.verdict(), Verdict::Fail, "packet {which}: {}", report.headline());
-        passed += usize::from(report.verdict() == Verdict::Pass);
     }
-    assert!(2 * passed > packets.len(), "{passed} of {} pass", packets.len());
 }
 
 /// Only STATUS tells whether the link delivered a request twice.

@@ -38,7 +38,7 @@ const AT_THE_DISK: usize = 8;
 pub enum ServeError {
     /// The address is not free.
     #[error(
-        "nothing can be served at {address}; end what is there, or take another port, by `listen` in the settings or by --port"
+        "nothing can be served at {address}; end what is there, or take another port, by `listen` in the settings or `demo --port`"
     )]
     Address {
         /// The address.
