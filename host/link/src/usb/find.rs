@@ -142,7 +142,7 @@ pub(super) fn choose(name: Option<&str>) -> Result<(FtdiDevice, String), UsbErro
     let mut meant: Vec<FtdiDevice> = all.into_iter().filter(is_meant).collect();
     match (meant.pop(), meant.is_empty(), name) {
         (Some(found), true, _) => {
-            let target = name.map_or_else(|| found.board.target(&everything), |name| format!("usb:{name}"));
+            let target = found.board.target(&everything);
             Ok((found, target))
         }
         (Some(found), false, _) => {
