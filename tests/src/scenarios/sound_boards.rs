@@ -35,9 +35,7 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("rows outside the image circle", "", &[W, "128", H, "72", R, "20"]).on_sim(OnSim::Stepped),
     passes("the smallest frame", "", &[W, "64", H, "1"]).on_sim(OnSim::Stepped),
     passes("the widest frame", ",max-width=2592", &[W, "2592", H, "8", R, "4"]),
-    passes("the highest frame", "", &[W, "64", H, "2048", R, "1030", "--frame", "builtin:noise"])
-        .on_sim(OnSim::Stepped)
-        .slow(),
+    passes("the highest frame", "", &[W, "64", H, "2048", R, "1030", "--frame", "builtin:noise"]).slow(),
     passes(
         "the full sensor behind a grid of 4,096 entries",
         ",max-width=2592,ring=4096,entries=4096",
