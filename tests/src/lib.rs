@@ -27,6 +27,5 @@ pub mod served;
 pub mod simulated_core;
 pub mod system;
 pub mod through;
-#[cfg(target_os = "linux")]
 pub mod usb;
 pub mod whole_board;

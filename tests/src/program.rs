@@ -1,6 +1,5 @@
 //! The `halfrow` program, started as a user starts it.
 
-#[cfg(unix)]
 pub mod another_user;
 mod built;
 pub mod documents;
@@ -136,7 +135,6 @@ impl Folder {
     ///
     /// # Panics
     /// Like [`halfrow()`].
-    #[cfg(unix)]
     #[must_use]
     pub fn halfrow_on_a_full_disk<'a>(
         &self,
@@ -151,7 +149,6 @@ impl Folder {
     ///
     /// # Panics
     /// Like [`command`].
-    #[cfg(unix)]
     #[must_use]
     pub fn by_shell<'a>(&self, line: &str, arguments: impl IntoIterator<Item = &'a str>) -> Command {
         let command = self.command(arguments);
@@ -161,7 +158,6 @@ impl Folder {
     }
 
     /// `other`, which starts `command`, with the folder and environment of `command`.
-    #[cfg(unix)]
     fn as_started_by(&self, mut other: Command, command: &Command) -> Command {
         for (name, value) in command.get_envs() {
             match value {

@@ -19,7 +19,7 @@ pub(super) fn program() -> PathBuf {
     let test = std::env::current_exe().unwrap();
     // target/PROFILE/deps/TEST
     let folder = test.ancestors().nth(2).unwrap();
-    let program = folder.join(format!("halfrow{}", std::env::consts::EXE_SUFFIX));
+    let program = folder.join("halfrow");
     if !is_fresh(&program) {
         build(folder);
     }

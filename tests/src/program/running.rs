@@ -94,7 +94,6 @@ impl Running {
     ///
     /// # Panics
     /// If it has ended already.
-    #[cfg(unix)]
     pub fn send(&self, signal: &str) {
         let process = Pid::from_raw(self.child.id().cast_signed());
         kill(process, Signal::from_str(&format!("SIG{signal}")).unwrap()).unwrap();
@@ -116,7 +115,6 @@ impl Running {
     ///
     /// # Panics
     /// If it has ended already.
-    #[cfg(unix)]
     pub fn stop(&self) {
         self.send("STOP");
         wait_until("a program to stand still", || {

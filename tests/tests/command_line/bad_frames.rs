@@ -185,7 +185,6 @@ fn samples_of_few_bits_in_deep_frames_are_told_once() {
 }
 
 /// A pipe cannot be read again to compare its hash with what was judged.
-#[cfg(unix)]
 #[test]
 fn a_pipe_is_no_frame_to_judge_with() {
     let folder = Folder::new();
@@ -198,7 +197,6 @@ fn a_pipe_is_no_frame_to_judge_with() {
 }
 
 /// File names are bytes, and need not be text.
-#[cfg(target_os = "linux")]
 #[test]
 fn files_whose_names_are_no_text_are_read() {
     use std::ffi::OsStr;

@@ -73,7 +73,6 @@ fn the_model_gives_what_the_mock_gives_byte_for_byte() {
     }
 }
 
-#[cfg(unix)]
 #[test]
 fn a_frame_may_come_through_a_pipe() {
     let folder = Folder::new();

@@ -98,7 +98,6 @@ fn a_photograph_is_previewed_as_it_is_coded() {
 }
 
 /// In 400 MB of address space: the 10.8 GB that a header of 60000 x 60000 asks for would end the program.
-#[cfg(target_os = "linux")]
 #[test]
 fn a_forged_header_takes_no_memory() {
     let folder = folder();

@@ -189,7 +189,6 @@ fn a_recording_that_is_there_is_kept() {
     assert_eq!(folder.names("."), ["run.rec"]);
 }
 
-#[cfg(unix)]
 #[test]
 fn a_recording_that_finds_no_space_is_no_pass_even_if_only_its_end_is_missing() {
     let folder = Folder::new();
@@ -205,7 +204,6 @@ fn a_recording_that_finds_no_space_is_no_pass_even_if_only_its_end_is_missing() 
 }
 
 /// A user without disk space for the recording still has a board to judge.
-#[cfg(unix)]
 #[test]
 fn a_wrong_board_is_wrong_on_a_full_disk_too() {
     let folder = Folder::new();

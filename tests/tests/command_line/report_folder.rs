@@ -122,7 +122,6 @@ fn a_place_that_cannot_be_written_is_refused_before_the_board_is_opened() {
 }
 
 /// Nothing can be renamed to a mount point, such as a container's volume.
-#[cfg(target_os = "linux")]
 #[test]
 fn a_mount_point_is_refused_before_the_board_is_opened_and_a_folder_inside_it_is_taken() {
     let mounted = |then: &str, more: &[&str]| {
@@ -150,7 +149,6 @@ fn a_mount_point_is_refused_before_the_board_is_opened_and_a_folder_inside_it_is
     assert!(FILES.iter().all(|name| taken.stdout.contains(name)), "{}", taken.stdout);
 }
 
-#[cfg(unix)]
 #[test]
 fn a_write_protected_folder_is_left_alone() {
     use std::os::unix::fs::PermissionsExt as _;
@@ -163,7 +161,6 @@ fn a_write_protected_folder_is_left_alone() {
     assert_eq!(fs::metadata(&out).unwrap().permissions().mode() & 0o777, 0o500);
 }
 
-#[cfg(target_os = "linux")]
 #[test]
 fn a_place_in_a_file_system_without_files_is_refused() {
     refused(
@@ -173,7 +170,6 @@ fn a_place_in_a_file_system_without_files_is_refused() {
     );
 }
 
-#[cfg(unix)]
 #[test]
 fn a_report_that_finds_no_space_leaves_none_and_is_no_pass() {
     let folder = Folder::new();
@@ -184,7 +180,6 @@ fn a_report_that_finds_no_space_leaves_none_and_is_no_pass() {
     assert_eq!(folder.names("."), [""; 0]);
 }
 
-#[cfg(unix)]
 #[test]
 fn a_fail_without_its_report_says_so_to_people_and_to_programs() {
     let folder = Folder::new();

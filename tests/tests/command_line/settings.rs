@@ -177,7 +177,6 @@ fn the_user_s_own_settings_file_is_read() {
 }
 
 /// Another user's home, which is what a container image often leaves in `USER`.
-#[cfg(unix)]
 #[test]
 fn the_user_s_own_settings_file_is_passed_over_when_it_may_not_be_read_and_a_named_one_is_not() {
     use std::os::unix::fs::PermissionsExt as _;

@@ -106,7 +106,6 @@ fn a_folder_by_a_name_of_a_report_and_a_report_of_another_program_are_left_alone
     }
 }
 
-#[cfg(unix)]
 #[test]
 fn a_report_that_replaces_one_is_open_to_the_same_people() {
     use std::os::unix::fs::PermissionsExt as _;
@@ -194,7 +193,6 @@ fn what_came_into_the_way_during_the_run_is_not_replaced() {
     assert_eq!(names(station.path()), ["today"]);
 }
 
-#[cfg(unix)]
 #[test]
 fn others_may_read_a_report_as_any_folder() {
     use std::os::unix::fs::PermissionsExt as _;

@@ -1,6 +1,5 @@
 //! The link over USB, on Debian's kernel and emulated chips. `scripts/in-linux` boots that kernel, and says how.
 
-#![cfg(target_os = "linux")]
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 

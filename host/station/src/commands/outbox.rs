@@ -69,6 +69,9 @@ enum Action {
     },
 }
 
+/// What is said when every sink has everything, so that none is called.
+const NOTHING_LEFT: &str = "nothing is left to be sent";
+
 /// What is still to be sent.
 #[derive(Debug, Serialize)]
 struct Backlog {
@@ -82,7 +85,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     match what {
         Action::List { json } => {
             let now = Snapshot::take(&folder)?;
-            let unsent = now.unsent()?;
+            let unsent = now.unsent_to(settings.sink_names())?;
             either(&Backlog { dead: now.dead(&unsent)?, unsent }, *json, text)
         }
         Action::Send { disk } => {
@@ -146,13 +149,16 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     // What was for former sinks is not sent to them any more.
     left.retain(|unsent| sinks.iter().any(|sink| sink.name() == unsent.sink));
     let entries: u32 = left.iter().map(|unsent| unsent.entries).sum();
+    if sent == 0 && left.is_empty() {
+        return print(NOTHING_LEFT);
+    }
     print(&format!("{sent} sent, {entries} not"))?;
     if left.is_empty() { Ok(Exit::Pass) } else { print(&table_of(&left)).map(|_| Exit::Error) }
 }
 
 fn text(Backlog { unsent, dead }: &Backlog) -> String {
     if unsent.is_empty() {
-        return "nothing is left to be sent".to_owned();
+        return NOTHING_LEFT.to_owned();
     }
     let dead = dead.iter().map(|Dead { sink, entry, dead_ms, said }| {
         vec![sink.clone(), entry.subject.clone(), time(*dead_ms), said.to_string()]

@@ -2,20 +2,21 @@
 //! transaction that keeps the thing itself, and is open until the sink certainly has it.
 
 mod acts;
+mod unsent;
+
+pub(crate) use unsent::DEAD_SHOWN;
+pub use unsent::{Dead, Unsent};
 
 use serde::Serialize;
 
 use super::database::{Database, DatabaseError, Row, values};
-use super::{Folder, Snapshot, Store, StoreError, Waiver, statements as sql};
+use super::{Folder, Store, StoreError, Waiver, statements as sql};
 use crate::record::Record;
-use crate::said::{Said, as_text, as_text_if_any};
+use crate::said::Said;
 use crate::{clock, ids};
 
 /// The plant's name among the sinks. A plant that moves to another address keeps it.
 pub const SINK_OF_PLANT: &str = "plant";
-
-/// The most entries of a sink that are listed as waiting for a person: a sink may have refused everything for years.
-pub(crate) const DEAD_SHOWN: u32 = 100;
 
 /// What an entry is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -58,24 +59,6 @@ pub struct Entry {
     pub attempts: u32,
 }
 
-/// What is unsent at a sink.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Unsent {
-    /// The sink.
-    pub sink: String,
-    /// Entries that it does not certainly have.
-    pub entries: u32,
-    /// Those of them that are runs and waivers, not lines of the audit.
-    pub results: u32,
-    /// Those of them that wait for a person.
-    pub dead: u32,
-    /// When the subject of the first of them came about, in milliseconds since 1970, UTC.
-    pub since_ms: i64,
-    /// What the sink said last to one that will be tried again.
-    #[serde(serialize_with = "as_text_if_any")]
-    pub said: Option<Said>,
-}
-
 /// The state of a run at a sink. A run that is not to be sent there is neither done nor dead.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Standing {
@@ -85,21 +68,6 @@ pub struct Standing {
     pub is_dead: bool,
     /// What the sink said at the last attempt that failed.
     pub said: Option<Said>,
-}
-
-/// An entry that waits for a person.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Dead {
-    /// The sink.
-    pub sink: String,
-    /// The entry.
-    #[serde(flatten)]
-    pub entry: Entry,
-    /// Since when, in milliseconds since 1970, UTC.
-    pub dead_ms: i64,
-    /// What the sink said.
-    #[serde(serialize_with = "as_text")]
-    pub said: Said,
 }
 
 /// The content of an entry.
@@ -188,8 +156,9 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when the database does not take it.
     pub fn sends_to(&mut self, sinks: Vec<String>) -> Result<(), StoreError> {
+        let enter_all = sql::ALL_TO_OUTBOX.replace("{of}", sql::UNENTERED);
         self.change("what is to be sent", |to| {
-            sinks.iter().try_for_each(|sink| to.execute(sql::ALL_TO_OUTBOX, values![sink]).map(drop))
+            sinks.iter().try_for_each(|sink| to.execute(&enter_all, values![sink]).map(drop))
         })?;
         self.sinks = sinks.into();
         Ok(())
@@ -238,36 +207,6 @@ impl Store {
                 to.execute(sql::OUTBOX_FAILED, of).map(drop)
             })
         })
-    }
-}
-
-impl Snapshot {
-    /// What is unsent at each sink that does not have everything.
-    ///
-    /// # Errors
-    /// [`StoreError`] when the database cannot be read.
-    pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
-        self.rows("to tell what is to be sent", sql::OUTBOX_STATE, &[], |row| {
-            let since_ms = ids::made_ms(row.text(4)?);
-            let (sink, entries, results, dead) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
-            Ok(Unsent { sink, entries, results, dead, since_ms, said: said(row, 5)? })
-        })
-    }
-
-    /// The first [`DEAD_SHOWN`] entries of each of these sinks that wait for a person; [`Unsent::dead`] counts all of them.
-    ///
-    /// # Errors
-    /// Like [`Self::unsent`].
-    pub fn dead(&self, unsent: &[Unsent]) -> Result<Vec<Dead>, StoreError> {
-        let mut dead = Vec::new();
-        for Unsent { sink, .. } in unsent.iter().filter(|unsent| unsent.dead > 0) {
-            let of = values![sink, DEAD_SHOWN];
-            dead.extend(self.rows("to tell what waits for a person", sql::OUTBOX_DEAD, of, |row| {
-                let said = said(row, 5)?.unwrap_or_else(|| Said::uncoded(String::new()));
-                Ok(Dead { sink: row.get(0)?, entry: entry(row, 1)?, dead_ms: row.get(4)?, said })
-            })?);
-        }
-        Ok(dead)
     }
 }
 

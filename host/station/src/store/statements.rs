@@ -98,6 +98,7 @@ statements! {
     pub(super) OPEN_RUN_OF_UNIT = "open-run-of-unit.sql";
     pub(super) NEWEST_ID = "newest-id.sql";
     pub(super) ADD_TO_OUTBOX = "add-to-outbox.sql";
+    pub(super) UNENTERED = "unentered.sql";
     pub(super) ALL_TO_OUTBOX = "all-to-outbox.sql";
     pub(super) OUTBOX_DUE = "outbox-due.sql";
     pub(super) OUTBOX_AT_ONCE = "outbox-at-once.sql";

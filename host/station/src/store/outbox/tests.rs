@@ -1,3 +1,4 @@
+use super::super::Snapshot;
 use super::*;
 
 /// Failed attempts at times that the test chooses, with the waits of the outbox itself.

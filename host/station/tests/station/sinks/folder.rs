@@ -93,6 +93,9 @@ fn whoever_may_read_the_folder_may_read_its_files_and_nobody_else() {
 fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() {
     let (folder, sink) = station("record");
     let share = folder.path().join("share");
+    // Kept by a command that knows no sinks.
+    let listed = did(folder.path(), &sink, &["outbox", "list"]);
+    assert!(listed.said.contains("share      10     0"), "{listed:?}");
     let away = send(folder.path(), &sink);
     assert!(away.said.starts_with("0 sent, 10 not") && away.said.contains("make it, or mount"), "{away:?}");
     assert!(!share.exists());
