@@ -133,7 +133,7 @@ fn model_mock_and_verilog_agree_on_every_sample_and_every_latency() {
 
 #[test]
 fn whole_boards_agree_through_their_bytes() {
-    boards_agree(Front::Bytes, 200);
+    boards_agree(Front::Bytes, 100);
 }
 
 #[test]

@@ -151,7 +151,7 @@ fn a_refusal_for_another_reason_or_with_another_detail_fails() {
 const UPSETS: [&str; 3] = ["duplicate", "reorder", "drop"];
 #[test]
 fn whatever_a_link_does_to_one_packet_a_sound_board_passes() {
-    upset_packets(199);
+    upset_packets(499);
 }
 
 #[test]

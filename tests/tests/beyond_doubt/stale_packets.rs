@@ -53,7 +53,7 @@ pub(super) fn late_copy(which: (Kind, usize), before: (Kind, usize), answered: b
 
 #[test]
 fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
-    deliver_late(17);
+    deliver_late(41);
 }
 
 #[test]
