@@ -152,7 +152,7 @@ impl Options<'_> {
             }
         };
         let mut chosen = tables.chosen.clone();
-        let mut asked = tables.kernel_asked.clone();
+        let mut asked = tables.kernel.asked.clone();
         if let Some(kernel) = arguments::kernel(&self.kernel)? {
             let name;
             Kernel { kernel: chosen.kernel, file: chosen.kernel_file, name, asked, .. } = kernel.taken()?;

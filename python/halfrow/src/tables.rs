@@ -23,10 +23,8 @@ pub(crate) struct Tables {
     pub(crate) chosen: Chosen,
     /// The notes of the table file; none if its kernel was replaced, since they may describe that.
     about: Option<Map<String, Value>>,
-    /// The name of the kernel.
-    kernel_name: String,
-    /// The name or file by which the kernel was requested, unless it is the table file's.
-    pub(crate) kernel_asked: Option<PathBuf>,
+    /// Their kernel, with what is known of it beside its weights.
+    pub(crate) kernel: Kernel,
     /// The files that they were read from.
     pub(crate) files: Vec<Input>,
 }
@@ -164,8 +162,7 @@ impl Tables {
     /// The kernel.
     #[getter]
     fn kernel(&self) -> Kernel {
-        let Chosen { kernel, kernel_file: file, .. } = self.chosen.clone();
-        Kernel { kernel, about: None, name: self.kernel_name.clone(), asked: self.kernel_asked.clone(), file }
+        self.kernel.clone()
     }
 
     /// The lens that built-in frames are seen through. For tables from a file, which does not contain it, this is the paper's.
@@ -205,17 +202,22 @@ impl Tables {
         kernel: Option<KernelLike<'_>>,
         files: Vec<Input>,
     ) -> PyResult<Self> {
-        let (mut kernel_name, mut kernel_asked) = (OF_FILE.to_owned(), None);
-        if let Some(kernel) = kernel {
-            Kernel {
-                kernel: chosen.kernel,
-                file: chosen.kernel_file,
-                name: kernel_name,
-                asked: kernel_asked,
-                ..
-            } = kernel.taken()?;
-            chosen.source = format!("{from}, {kernel_name} kernel");
-        }
-        Ok(Self { chosen, about: None, kernel_name, kernel_asked, files })
+        let kernel = match kernel {
+            Some(kernel) => {
+                let kernel = kernel.taken()?;
+                chosen.kernel = kernel.kernel.clone();
+                chosen.kernel_file.clone_from(&kernel.file);
+                chosen.source = format!("{from}, {} kernel", kernel.name);
+                kernel
+            }
+            None => Kernel {
+                kernel: chosen.kernel.clone(),
+                about: None,
+                name: OF_FILE.to_owned(),
+                asked: None,
+                file: chosen.kernel_file.clone(),
+            },
+        };
+        Ok(Self { chosen, about: None, kernel, files })
     }
 }

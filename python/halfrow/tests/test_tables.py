@@ -108,6 +108,7 @@ def test_notes_stay_with_what_they_are_about(tmp_path, small):
     tables, kernel = noted("tables.json"), noted("kernel.json")
     assert notes(halfrow.Tables.read(tables), "again.json") == about
     assert notes(halfrow.Kernel(kernel), "kernel_again.json") == about
+    assert notes(halfrow.Tables.from_lens(kernel=kernel).kernel, "kernel_of_tables.json") == about
     # The notes may describe the kernel that was replaced.
     assert notes(halfrow.Tables.read(tables, kernel=kernel), "other.json") is None
     assert notes(halfrow.Tables.read(tables).kernel, "its_kernel.json") is None

@@ -82,6 +82,7 @@ mod tests {
         let all = lines();
         let upright = all.iter().filter(|line| line.is_upright).count();
         assert!(upright > 10 && all.len() > upright + 10, "{upright} of {}", all.len());
+        let mut hit = 0;
         for line in all.iter().filter(|line| !line.is_upright && line.ends[0][1] < CAMERA) {
             let middle: [f64; 3] =
                 std::array::from_fn(|at| f64::midpoint(line.ends[0][at], line.ends[1][at]));
@@ -90,11 +91,13 @@ mod tests {
             let roof = CAMERA - middle[1];
             if let Hit::Facade { height, .. } = seen(ray(0.1)) {
                 assert!((roof - height).abs() < 0.5, "{line:?}: {height}");
+                hit += 1;
             }
             assert!(
                 !matches!(seen(ray(-0.1)), Hit::Facade { height, .. } if (roof - height).abs() < 0.05),
                 "{line:?}"
             );
         }
+        assert!(hit > 10, "{hit} of the roofs are seen");
     }
 }
