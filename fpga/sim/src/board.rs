@@ -1,5 +1,7 @@
 //! A simulated board at the end of a pipe.
 
+use std::fs::{self, File};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -72,7 +74,7 @@ pub enum Failure {
 /// The waveform of the simulated board cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TraceError {
-    /// A file of that name exists.
+    /// A file or a link of that name exists.
     #[error("{0} is there already; remove it, or choose another place for the waveform with trace=FILE")]
     Exists(PathBuf),
     /// The file cannot be opened.
@@ -127,12 +129,18 @@ impl Board {
     /// From now on writes a waveform of the whole design to `path`, in VCD. Builds for tests have none.
     ///
     /// # Errors
-    /// [`TraceError`] if the file already exists or cannot be opened.
+    /// [`TraceError`] if the file already exists, be it as a link that leads nowhere, or cannot be opened.
     pub fn trace(&mut self, path: &Path) -> Result<(), TraceError> {
-        if path.exists() {
-            return Err(TraceError::Exists(path.to_owned()));
+        // Made here, since the simulation would write through a link and over a file.
+        File::create_new(path).map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => TraceError::Exists(path.to_owned()),
+            _ => TraceError::Unwritable(path.to_owned()),
+        })?;
+        if self.machine.trace(path) {
+            return Ok(());
         }
-        if self.machine.trace(path) { Ok(()) } else { Err(TraceError::Unwritable(path.to_owned())) }
+        _ = fs::remove_file(path);
+        Err(TraceError::Unwritable(path.to_owned()))
     }
 
     /// Milliseconds that have passed since those that the design was last told of.

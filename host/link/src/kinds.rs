@@ -27,9 +27,14 @@ pub struct Kind {
     pub(crate) check: fn(&Target) -> Result<(), OpenError>,
     /// Opens the link without sending anything over it.
     pub(crate) open: fn(&Target) -> Result<Box<dyn Link>, OpenError>,
+    /// The option that names a file that such a board writes, if there is one.
+    pub(crate) writes: Option<&'static str>,
     /// Lists what could be such a board on this computer. What cannot be listed at all is left out.
     pub find: fn() -> Vec<Found>,
 }
+
+/// The option of a simulated board that names the file of its waveform.
+pub(crate) const TRACE: &str = "trace";
 
 /// All of them, the built-in ones first.
 pub static KINDS: [Kind; 6] = [
@@ -42,6 +47,7 @@ pub static KINDS: [Kind; 6] = [
         board: BoardKind::Mock,
         check: |target| open_mock(target).map(drop),
         open: open_mock,
+        writes: None,
         find: Vec::new,
     },
     Kind {
@@ -58,6 +64,7 @@ pub static KINDS: [Kind; 6] = [
         board: BoardKind::Sim,
         check: check_simulated,
         open: open_simulated,
+        writes: Some(TRACE),
         find: Vec::new,
     },
     Kind {
@@ -72,6 +79,7 @@ pub static KINDS: [Kind; 6] = [
         board: BoardKind::Hardware,
         check: UsbLink::check,
         open: |target| Ok(Box::new(UsbLink::open(target)?)),
+        writes: None,
         find: usb_chips::find,
     },
     Kind {
@@ -83,6 +91,7 @@ pub static KINDS: [Kind; 6] = [
         board: BoardKind::Hardware,
         check: SerialLink::check,
         open: |target| Ok(Box::new(SerialLink::open(target)?)),
+        writes: None,
         find: serial_ports::find,
     },
     Kind {
@@ -94,6 +103,7 @@ pub static KINDS: [Kind; 6] = [
         board: BoardKind::Hardware,
         check: TcpLink::check,
         open: |target| Ok(Box::new(TcpLink::open(target)?)),
+        writes: None,
         find: Vec::new,
     },
     Kind {
@@ -102,6 +112,7 @@ pub static KINDS: [Kind; 6] = [
         board: BoardKind::Replay,
         check: check_replay,
         open: open_replay,
+        writes: None,
         find: Vec::new,
     },
 ];

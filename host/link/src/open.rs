@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::path::Path;
 
-use halfrow_mock::BoardFault;
+use halfrow_mock::{BoardFault, ConnectError};
+use halfrow_pipe::TargetError;
 
 #[cfg(feature = "sim")]
 pub(crate) use super::simulated::{check_simulated, open_simulated};
@@ -34,9 +35,8 @@ pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     let kind = kind(target)?;
     let link = (kind.open)(target)?;
     let again = target.clone();
-    // A recording would start again from its beginning, and a waveform be written twice.
-    let is_there_again =
-        kind.board != BoardKind::Replay && !target.options.iter().any(|(key, _)| key == "trace");
+    // A recording would start again from its beginning, and what a board has written is not written over.
+    let is_there_again = kind.board != BoardKind::Replay && written_file(target).is_none();
     let reopen = is_there_again.then(|| Box::new(move || Ok(open(&again)?.link)) as Reopener);
     Ok(Candidate { target: target.to_string(), kind: kind.board, link, reopen })
 }
@@ -49,16 +49,22 @@ pub fn fault(target: &Target) -> Result<Option<BoardFault>, OpenError> {
     if target.kind != "mock" {
         return Ok(None);
     }
-    let (_, options) = pace(target)?;
-    halfrow_mock::board_fault(&options).map_err(|source| wrong_options(MOCK, target, source))
+    let mut options = options_of(target);
+    pace(MOCK, target, &mut options)?;
+    halfrow_mock::board_fault(&options)
+        .map_err(|source| wrong_options(MOCK, target, with_keys(source, &[PACE])))
 }
 
 pub(crate) fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
     if let Some(address) = &target.address {
         return Err(OpenError::NoAddress { kind: target.kind.clone(), address: address.clone() });
     }
-    let (paced, options) = pace(target)?;
-    let pipe = halfrow_mock::connect(&options).map_err(|source| wrong_options(MOCK, target, source))?;
+    let mut options = options_of(target);
+    let paced = pace(MOCK, target, &mut options)?;
+    let pipe = halfrow_mock::connect(&options).map_err(|error| match error {
+        ConnectError::Target(source) => wrong_options(MOCK, target, with_keys(source, &[PACE])),
+        other => wrong_options(MOCK, target, other),
+    })?;
     Ok(Box::new(WireLink::new(pipe, MOCK, paced)))
 }
 
@@ -75,19 +81,49 @@ pub(crate) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError
 /// The options of a target, as pairs of key and value.
 pub(super) type Options<'a> = Vec<(&'a str, &'a str)>;
 
-/// Whether the pipe of a board in this process is paced, and the remaining options.
-pub(super) fn pace(target: &Target) -> Result<(bool, Options<'_>), OpenError> {
-    let mut paced = false;
-    let mut options = Options::new();
-    for (key, value) in &target.options {
-        match (key.as_str(), value.as_str()) {
-            ("pace", "real") => paced = true,
-            ("pace", "virtual") => paced = false,
-            ("pace", _) => return Err(OpenError::Pace { key: key.clone(), value: value.clone() }),
-            option => options.push(option),
-        }
+pub(super) fn options_of(target: &Target) -> Options<'_> {
+    target.options.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect()
+}
+
+/// Takes the value of `key` out of `options`.
+pub(super) fn take<'a>(
+    board: &'static str,
+    target: &Target,
+    options: &mut Options<'a>,
+    key: &str,
+) -> Result<Option<&'a str>, OpenError> {
+    let values: Vec<_> = options.extract_if(.., |(name, _)| *name == key).map(|(_, value)| value).collect();
+    match *values {
+        [] => Ok(None),
+        [value] => Ok(Some(value)),
+        _ => Err(wrong_options(board, target, TargetError::Duplicate { key: key.to_owned() })),
     }
-    Ok((paced, options))
+}
+
+/// The option that says which clock the pipe of a board in this process follows.
+pub(super) const PACE: &str = "pace";
+
+/// Takes [`PACE`] out of `options`, and tells whether the pipe is paced.
+pub(super) fn pace(
+    board: &'static str,
+    target: &Target,
+    options: &mut Options<'_>,
+) -> Result<bool, OpenError> {
+    match take(board, target, options, PACE)? {
+        Some("real") => Ok(true),
+        Some("virtual") | None => Ok(false),
+        Some(value) => Err(OpenError::Pace { key: PACE.to_owned(), value: value.to_owned() }),
+    }
+}
+
+/// `error`, which names the options that the pipe and its board have, with `keys` among them.
+pub(super) fn with_keys(error: TargetError, keys: &[&str]) -> TargetError {
+    match error {
+        TargetError::UnknownKey { key, known } => {
+            TargetError::UnknownKey { key, known: format!("{}, {known}", keys.join(", ")) }
+        }
+        other => other,
+    }
 }
 
 pub(super) fn wrong_options(
@@ -114,6 +150,14 @@ pub fn recording(target: &Target) -> Result<Option<Recording>, OpenError> {
 #[must_use]
 pub fn recording_file(target: &Target) -> Option<&Path> {
     target.address.as_deref().filter(|_| target.kind == "replay").map(Path::new)
+}
+
+/// The file that the board of `target` writes, if the target names one. It is made when the board is opened, never through a
+/// link and never over a file.
+#[must_use]
+pub fn written_file(target: &Target) -> Option<&Path> {
+    let option = kinds::of(target)?.writes?;
+    target.options.iter().find(|(key, _)| key == option).map(|(_, file)| Path::new(file))
 }
 
 /// The board that answered in `recording`, which `target` names.

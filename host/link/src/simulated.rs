@@ -6,8 +6,9 @@ use halfrow_pipe::PipeSetup;
 use halfrow_sim::{Board, Front};
 
 use super::OpenError;
-use super::open::{pace, wrong_options};
+use super::open::{PACE, options_of, pace, take, with_keys, wrong_options};
 use super::{Link, WireLink};
+use crate::kinds::TRACE;
 use crate::target::Target;
 
 const SIMULATED: &str = "the simulated board";
@@ -35,10 +36,11 @@ fn asked(target: &Target) -> Result<SimOptions<'_>, OpenError> {
         Some("fifo") => Front::Fifo,
         Some(other) => return Err(OpenError::UnknownFront(other.to_owned())),
     };
-    let (paced, mut options) = pace(target)?;
-    let trace = options.iter().position(|(key, _)| *key == "trace").map(|place| options.remove(place).1);
-    let setup =
-        PipeSetup::from_options(&options).map_err(|source| wrong_options(SIMULATED, target, source))?;
+    let mut options = options_of(target);
+    let paced = pace(SIMULATED, target, &mut options)?;
+    let trace = take(SIMULATED, target, &mut options, TRACE)?;
+    let setup = PipeSetup::from_options(&options)
+        .map_err(|source| wrong_options(SIMULATED, target, with_keys(source, &[PACE, TRACE])))?;
     Ok(SimOptions { front, setup, paced, trace })
 }
 

@@ -78,10 +78,10 @@ def refused_as_by_the_program(program, call, arguments, code):
 SMALL = ["--radius", 80, "--width", 128, "--height", 32]
 
 
-def verify(options, **named):
-    """A call of verify here with the arguments `named`, and the same call of the program with `options`."""
+def verify(options, board="mock", **named):
+    """A call of verify here with `board` and the arguments `named`, and the same call of the program with `options`."""
     tables = halfrow.Tables.from_lens(halfrow.Lens("equidistant:80", width=128, height=32))
-    return lambda: halfrow.verify("mock", tables=tables, **named), ["verify", *SMALL, *options]
+    return lambda: halfrow.verify(board, tables=tables, **named), ["verify", *SMALL, *options]
 
 
 def test_codes_of_runs_are_those_of_the_program(tmp_path, program, monkeypatch):
@@ -101,6 +101,7 @@ def test_codes_of_runs_are_those_of_the_program(tmp_path, program, monkeypatch):
         (verify(["--report", "no/rep"], report="no/rep"), "folder-unusable"),
         (verify(["--report", "folder"], report="folder"), "folder-is-no-report"),
         (verify(["--record", "x", "--report", "x"], record="x", report="x"), "outputs-share-a-file"),
+        (verify(["--board", "sim,trace=x", "--record", "x"], board="sim,trace=x", record="x"), "outputs-share-a-file"),
         (verify(["--frame", "ok.pgm", "--frame", "big.pgm"], frames=["ok.pgm", "big.pgm"]), "frame-of-other-size"),
         (verify(["--frame", "narrow.pgm"], frames="narrow.pgm"), "frame-of-other-size"),
         (verify(["--within", 2, "--frame", "ok.pgm"], within=2, frames="ok.pgm"), "option-without-effect"),

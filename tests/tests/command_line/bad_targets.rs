@@ -46,11 +46,15 @@ fn an_unknown_kind_is_refused() {
 
 #[test]
 fn an_unknown_option_of_the_mock_is_refused_with_those_that_there_are() {
-    no_such_board("mock,colour=red", "`colour` is not an option of this board; choose from latency, ring");
-    no_such_board("mock,latenc=12", "(did you mean latency?); choose from latency, ring");
+    no_such_board(
+        "mock,colour=red",
+        "`colour` is not an option of this board; choose from pace, latency, ring",
+    );
+    no_such_board("mock,latenc=12", "(did you mean latency?); choose from pace, latency, ring");
     no_such_board("mock,bit=3", "a fault's parameters need fault=NAME");
     no_such_board("mock,latency=12,latency=13", "latency is given twice");
     no_such_board("mock,pace=fast", "pace=virtual or pace=real");
+    no_such_board("mock,pace=real,pace=virtual", "pace is given twice");
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! The simulated board as a target.
 
+use std::os::unix::fs::symlink;
+
 use halfrow_tests::program::Folder;
 
-use crate::refused;
+use crate::{refused, small};
 
 #[test]
 fn what_a_simulated_board_cannot_be_is_refused() {
@@ -12,7 +14,12 @@ fn what_a_simulated_board_cannot_be_is_refused() {
     refuse("sim,latency=12", "`latency` is not an option of this board");
     refuse("sim,fault=late", "late");
     refuse("sim,speed=0", "speed=0 is out of range");
-    refuse("sim,trace=no/such/folder.vcd", "the waveform no/such/folder.vcd cannot be written");
+    refuse("sim,trace=a.vcd,trace=b.vcd", "trace is given twice");
+    refuse("sim,traec=a.vcd", "(did you mean trace?); choose from pace, trace, speed");
+    refuse("sim,trace=no/such/folder.vcd", "nothing can be written into the folder no/such");
+    refuse("sim,trace=-", "`trace=FILE -` names no place");
+    let call = ["info", "--board", "sim,trace=no/such/folder.vcd"];
+    refused(&folder, &call, "the waveform no/such/folder.vcd cannot be written");
 }
 
 #[test]
@@ -24,7 +31,39 @@ fn a_waveform_is_written_and_never_over_another_file() {
     let waveform = folder.text("run.vcd");
     assert!(waveform.contains("$timescale") && waveform.contains("out_sample"), "{}", &waveform[..400]);
     refused(&folder, &call, "run.vcd is there already");
+    let overwriting = small("verify", &["--board", "sim,trace=run.vcd", "--overwrite"]);
+    refused(&folder, &overwriting, "run.vcd is there already");
     assert_eq!(folder.text("run.vcd"), waveform);
+}
+
+#[test]
+fn a_waveform_is_never_written_through_a_link() {
+    let folder = Folder::new();
+    symlink("nowhere.vcd", folder.path().join("link.vcd")).unwrap();
+    refused(&folder, &["info", "--board", "sim,trace=link.vcd"], "link.vcd is there already");
+    let call = small("verify", &["--board", "sim,trace=link.vcd"]);
+    refused(&folder, &call, "link.vcd is a link to nowhere.vcd");
+}
+
+/// Before the board is switched on: it would run to its end, and only then find its other output's place taken.
+#[test]
+fn a_waveform_has_a_place_of_its_own_among_a_call_s_files() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("frames", &["--only", "black", "-o", "."])).code, Some(0));
+    let verify = |rest: &[&'static str]| small("verify", &[&["--board", "sim,trace=out"], rest].concat());
+    let shared = "would both be written to";
+    refused(&folder, &verify(&["--record", "out"]), shared);
+    refused(&folder, &verify(&["--report", "out"]), shared);
+    let soak = ["soak", "--frames", "1", "--board", "sim,trace=out", "--report", "out"];
+    refused(&folder, &soak, shared);
+    let correct = |trace: &'static str, rest: &[&'static str]| {
+        small("correct", &[&["builtin:black", "--board", trace], rest].concat())
+    };
+    refused(&folder, &correct("sim,trace=out.png", &["-o", "out.png"]), shared);
+    let paper = ["paper", "delay", "--board", "sim,trace=paper/paper.html", "-o", "paper"];
+    refused(&folder, &paper, shared);
+    let of_input = small("verify", &["--board", "sim,trace=black.pgm", "--frame", "black.pgm"]);
+    refused(&folder, &of_input, "black.pgm is read by this call, and trace=FILE would write there");
 }
 
 /// It would be refused, as a place that is taken.

@@ -1,6 +1,5 @@
 //! The options of the board and its link, which several commands share.
 
-use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -19,6 +18,7 @@ use crate::settings::Settings;
 use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop, WhenHeld};
+use halfrow::call::Files;
 use halfrow::link::{self, Candidate, Recording, kinds};
 use halfrow::run::{AtSpeed, Build, JUDGED, Plan};
 use halfrow::target::{BoardKind, Target, TargetError};
@@ -41,6 +41,9 @@ pub(crate) struct BoardArguments {
     #[arg(long)]
     pub(crate) take_over: bool,
 }
+
+/// What names the file that a board writes. Only a simulated one does.
+pub(crate) const IN_TARGET: &str = "trace=FILE";
 
 /// The end of the help of most commands: what they do if no board is named.
 pub(crate) const MOCK: &str = " [default: mock]";
@@ -121,9 +124,12 @@ impl BoardArguments {
         self.board.is_some() || settings.board.is_some()
     }
 
-    /// The recording that the target names, if it is one.
-    pub(crate) fn replayed(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
-        Ok(link::recording_file(&self.named(settings)?).map(Path::to_owned))
+    /// The list of what a call reads and writes, with what its board reads and writes.
+    pub(crate) fn files(&self, overwrite: bool, settings: &Settings) -> Result<Files, Failure> {
+        let target = self.named(settings)?;
+        Ok(Files::new(overwrite)
+            .reads(link::recording_file(&target))
+            .writes_claimed(IN_TARGET, link::written_file(&target)))
     }
 
     /// The target that is named: a board, or a pool of some kind; by default the mock.

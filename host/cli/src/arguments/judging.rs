@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use halfrow_program::number::{any, whole_number};
 
-use super::board::{BoardArguments, check_fault};
+use super::board::{BoardArguments, IN_TARGET, check_fault, wrong};
 use super::given::{Given, yes_or_no};
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
@@ -16,7 +16,7 @@ use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::settings::Settings;
 use crate::{console, flags, text};
-use halfrow::call::{self, Files, FilesError, Input};
+use halfrow::call::{self, FilesError, Input};
 use halfrow::files::check_regular;
 use halfrow::link::{Candidate, Recording, RecordingFile};
 use halfrow::optics::Chosen;
@@ -198,15 +198,17 @@ impl RunArguments {
     ) -> Result<(), Failure> {
         let settings = &context.settings;
         prepare_files(
-            &Files::new(self.overwrites(settings))
+            &self
+                .board
+                .files(self.overwrites(settings), settings)?
                 .reads(&context.settings_file)
                 .reads(inputs)
                 .reads_kernel(self.kernel(settings))
-                .reads(self.board.replayed(settings)?)
                 .writes_claimed("--record", record)
                 .writes_report("--report", self.report_path(settings)),
         )
         .map_err(|error| match (error.option(), &error) {
+            (Some(IN_TARGET), _) => wrong(Failure::call(error)),
             (Some(option), _) => Failure::call(error).in_value_of(option),
             (None, FilesError::Report(_)) => Failure::call(error).in_value_of("--report"),
             (None, _) => Failure::call(error),

@@ -79,7 +79,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     arguments.refuse_void(&inputs, settings)?;
     let places = Places::of(&inputs, &arguments.wanted()).map_err(Failure::call)?;
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
-    let files = Files::new(arguments.overwrite)
+    let files = if arguments.model {
+        Files::new(arguments.overwrite)
+    } else {
+        arguments.board.files(arguments.overwrite, settings)?
+    };
+    let files = files
         .reads(&context.settings_file)
         .reads(arguments.tables.path(settings))
         .reads(arguments.lens.file())

@@ -63,7 +63,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let items = arguments.items();
     let through_board = arguments.board.is_named(&context.settings);
     let uses_board = items.iter().any(|item| item.uses_board(through_board));
-    arguments.check(&items, uses_board, context).map_err(Failure::call)?;
+    let files = if uses_board {
+        arguments.board.files(arguments.overwrite, &context.settings)?
+    } else {
+        Files::new(arguments.overwrite)
+    };
+    arguments.check(&items, uses_board, files, context).map_err(Failure::call)?;
     let photographs = arguments.photographs(&items);
     let photographs = photographs.map_err(|error| Failure::call(error).in_value_of("--images"))?;
     let marked = arguments.marked().map_err(Failure::call)?;
@@ -154,7 +159,7 @@ impl Arguments {
     }
 
     /// Refuses options without effect, and outputs that would replace existing files.
-    fn check(&self, items: &[Item], uses_board: bool, context: &Context) -> anyhow::Result<()> {
+    fn check(&self, items: &[Item], uses_board: bool, files: Files, context: &Context) -> anyhow::Result<()> {
         let any = |is_meant: fn(Item) -> bool| items.iter().any(|&item| is_meant(item));
         for (is_wanted, decider) in [
             (uses_board, Decider::NoBoardItem),
@@ -166,7 +171,7 @@ impl Arguments {
                 self.given.refuse_void(decider, &context.settings.keys())?;
             }
         }
-        let files = Files::new(self.overwrite)
+        let files = files
             .reads(&context.settings_file)
             .reads([&self.synthesis])
             .reads(&self.photograph)
