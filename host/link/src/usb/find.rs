@@ -30,11 +30,12 @@ pub struct UsbBoard {
 }
 
 impl UsbBoard {
-    /// The target that names it among `all` that are plugged in: its serial number, or its place if it has none of its own.
+    /// The target that names it among `all` that are plugged in: its serial number, or its place if it has none of its own or one
+    /// with a comma, behind which a target has options.
     pub(crate) fn target(&self, all: &[Self]) -> String {
+        let is_own = || all.iter().filter(|one| one.device.serial == self.device.serial).count() == 1;
         let serial = self.device.serial.as_deref();
-        let own =
-            serial.filter(|_| all.iter().filter(|one| one.device.serial == self.device.serial).count() == 1);
+        let own = serial.filter(|serial| !serial.contains(',') && is_own());
         format!("usb:{}", own.unwrap_or(&self.place))
     }
 
@@ -158,6 +159,35 @@ pub(super) fn choose(name: Option<&str>) -> Result<(FtdiDevice, String), UsbErro
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Target;
+
+    #[test]
+    fn a_chip_s_target_leads_to_it_alone() {
+        let board = |place: &str, serial: Option<&str>| UsbBoard {
+            device: UsbDevice {
+                vendor_id: VENDOR,
+                product_id: 0x6010,
+                device_version: 0x0700,
+                manufacturer: None,
+                product: None,
+                serial: serial.map(str::to_owned),
+                interface: Some(0),
+            },
+            chip: "FT2232H",
+            file: PathBuf::new(),
+            place: place.to_owned(),
+            is_permitted: true,
+        };
+        let serials = [Some("FT1"), Some("FT,1"), Some("FT,mode=fifo"), Some("twice"), Some("twice"), None];
+        let all: Vec<_> =
+            serials.into_iter().zip(1..).map(|(serial, port)| board(&format!("1-{port}"), serial)).collect();
+        let targets: Vec<_> = all.iter().map(|board| board.target(&all)).collect();
+        assert_eq!(targets, ["usb:FT1", "usb:1-2", "usb:1-3", "usb:1-4", "usb:1-5", "usb:1-6"]);
+        for (target, board) in targets.iter().zip(&all) {
+            let target: Target = target.parse().unwrap();
+            assert!(target.options.is_empty() && board.is_called(&target.address.unwrap()));
+        }
+    }
 
     #[test]
     fn a_version_is_the_descriptor_s_own() {
