@@ -4,6 +4,7 @@
 //! "halfrow recording 1\n"
 //! one line of JSON                     the link, and what the host needs to hold the conversation again
 //! then for every exchange: u64 time in nanoseconds, u32 taken, u32 received, the bytes taken, the bytes received
+//! before one that changed them: u64 0, u32 2^32 - 1, u32 32, u64 overruns, parity, framing, breaks: the line's errors so far
 //! ```
 //! Integers are little endian. A recording that ends early is that of an interrupted run.
 
@@ -55,14 +56,19 @@ pub enum RecordingError {
     },
 }
 
-#[derive(Serialize, Deserialize)]
-struct Head<T> {
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Head<T> {
     link: String,
-    bytes_per_second: Option<f64>,
+    pub(super) bytes_per_second: Option<f64>,
     #[serde(default)]
-    exclusive: bool,
+    pub(super) exclusive: bool,
+    #[serde(default)]
+    pub(super) waits_for_cts: bool,
     run: T,
 }
+
+/// Stands for `taken` in front of the line's errors: no exchange takes so many bytes.
+const LINE_ERRORS: u32 = u32::MAX;
 
 /// What one call of [`Link::exchange`] moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -70,10 +76,19 @@ pub(super) struct Exchange<'a> {
     pub(super) at: Duration,
     pub(super) taken: &'a [u8],
     pub(super) received: &'a [u8],
+    /// The line's errors so far; none if they are as before.
+    pub(super) line_errors: Option<LineErrors>,
 }
 
 impl<'a> Exchange<'a> {
     fn write(&self, file: &mut impl Write) -> io::Result<()> {
+        if let Some(LineErrors { overrun, parity, framing, breaks }) = self.line_errors {
+            let counts = [overrun, parity, framing, breaks].map(u64::to_le_bytes);
+            let length = size_of_val(&counts) as u32;
+            file.write_all(&[0; size_of::<u64>()])?;
+            file.write_all(&[LINE_ERRORS, length].map(u32::to_le_bytes).concat())?;
+            file.write_all(&counts.concat())?;
+        }
         let nanoseconds = u64::try_from(self.at.as_nanos()).unwrap_or(u64::MAX);
         let length = |bytes: &[u8]| u32::try_from(bytes.len()).unwrap_or(u32::MAX).to_le_bytes();
         file.write_all(&nanoseconds.to_le_bytes())?;
@@ -84,14 +99,35 @@ impl<'a> Exchange<'a> {
     }
 
     fn read(rest: &mut &'a [u8]) -> Option<Self> {
-        let (nanoseconds, after) = rest.split_first_chunk()?;
-        let (taken, after) = after.split_first_chunk()?;
-        let (received, after) = after.split_first_chunk()?;
-        let (taken, after) = after.split_at_checked(u32::from_le_bytes(*taken) as usize)?;
-        let (received, after) = after.split_at_checked(u32::from_le_bytes(*received) as usize)?;
+        let mut after = *rest;
+        let mut line_errors = None;
+        let (at, taken, received) = loop {
+            let (nanoseconds, taken, received) =
+                (number(&mut after)?, short_number(&mut after)?, short_number(&mut after)?);
+            if taken != LINE_ERRORS {
+                break (Duration::from_nanos(nanoseconds), taken, received);
+            }
+            let mut counts = after.split_off(..received as usize)?;
+            let mut count = || number(&mut counts);
+            line_errors =
+                Some(LineErrors { overrun: count()?, parity: count()?, framing: count()?, breaks: count()? });
+        };
+        let (taken, received) = (after.split_off(..taken as usize)?, after.split_off(..received as usize)?);
         *rest = after;
-        Some(Self { at: Duration::from_nanos(u64::from_le_bytes(*nanoseconds)), taken, received })
+        Some(Self { at, taken, received, line_errors })
     }
+}
+
+fn number(bytes: &mut &[u8]) -> Option<u64> {
+    let (number, after) = bytes.split_first_chunk()?;
+    *bytes = after;
+    Some(u64::from_le_bytes(*number))
+}
+
+fn short_number(bytes: &mut &[u8]) -> Option<u32> {
+    let (number, after) = bytes.split_first_chunk()?;
+    *bytes = after;
+    Some(u32::from_le_bytes(*number))
 }
 
 /// The file of a recording that is to be made. It is written aside until the recorder is dropped.
@@ -113,6 +149,8 @@ impl RecordingFile {
 pub struct Recorder {
     link: Box<dyn Link>,
     file: Option<RecordingFile>,
+    /// As last recorded.
+    line_errors: LineErrors,
     lost: Lost,
 }
 
@@ -140,6 +178,7 @@ impl Recorder {
             link: link.name(),
             bytes_per_second: link.bytes_per_second(),
             exclusive: link.is_exclusive(),
+            waits_for_cts: link.waits_for_cts(),
             run,
         };
         let mut write_head = || {
@@ -149,7 +188,7 @@ impl Recorder {
             file.0.flush()
         };
         write_head().map_err(LinkError::Record)?;
-        Ok(Self { link, file: Some(file), lost: Lost::default() })
+        Ok(Self { link, file: Some(file), line_errors: LineErrors::default(), lost: Lost::default() })
     }
 
     /// Where a failure to finish the recording will be reported.
@@ -177,8 +216,10 @@ impl Link for Recorder {
     ) -> Result<usize, LinkError> {
         let before = incoming.len();
         let taken = self.link.exchange(outgoing, incoming, wait)?;
-        let exchange =
-            Exchange { at: self.link.now(), taken: &outgoing[..taken], received: &incoming[before..] };
+        let seen = self.link.line_errors();
+        let line_errors = (seen != std::mem::replace(&mut self.line_errors, seen)).then_some(seen);
+        let (sent, received) = (&outgoing[..taken], &incoming[before..]);
+        let exchange = Exchange { at: self.link.now(), taken: sent, received, line_errors };
         if let Some(mut file) = self.file.take() {
             match exchange.write(&mut file.0) {
                 Ok(()) => self.file = Some(file),
@@ -251,23 +292,7 @@ impl Recording {
         self.head().map(|head| head.run)
     }
 
-    /// The rate of the recorded link, if it knew one.
-    ///
-    /// # Errors
-    /// [`RecordingError::Head`] when the head does not parse.
-    pub fn bytes_per_second(&self) -> Result<Option<f64>, RecordingError> {
-        self.head::<serde::de::IgnoredAny>().map(|head| head.bytes_per_second)
-    }
-
-    /// Whether only its program could reach the board over the recorded link.
-    ///
-    /// # Errors
-    /// [`RecordingError::Head`] when the head does not parse.
-    pub fn is_exclusive(&self) -> Result<bool, RecordingError> {
-        self.head::<serde::de::IgnoredAny>().map(|head| head.exclusive)
-    }
-
-    fn head<T: DeserializeOwned>(&self) -> Result<Head<T>, RecordingError> {
+    pub(super) fn head<T: DeserializeOwned>(&self) -> Result<Head<T>, RecordingError> {
         serde_json::from_str(&self.head)
             .map_err(|source| RecordingError::Head { path: self.path.clone(), source })
     }

@@ -2,7 +2,10 @@
 
 use std::time::Duration;
 
-use super::{Link, LinkError, Recording, RecordingError};
+use serde::de::IgnoredAny;
+
+use super::{LineErrors, Link, LinkError, Recording, RecordingError};
+use crate::recording::Head;
 
 /// The most bytes that a stopped host sends to close its session: a RESET, sent more than once.
 const PARTING: usize = 128;
@@ -11,8 +14,9 @@ const PARTING: usize = 128;
 #[derive(Debug)]
 pub(crate) struct ReplayLink {
     name: String,
-    bytes_per_second: Option<f64>,
-    exclusive: bool,
+    /// What the recorded link told of itself.
+    head: Head<IgnoredAny>,
+    line_errors: LineErrors,
     recording: Recording,
     /// The offset of the next exchange.
     place: usize,
@@ -29,13 +33,12 @@ impl ReplayLink {
     /// [`RecordingError::Head`] when the recording's head does not parse.
     pub(crate) fn new(recording: Recording) -> Result<Self, RecordingError> {
         let name = format!("the recording {}", recording.path().display());
-        let bytes_per_second = recording.bytes_per_second()?;
-        let exclusive = recording.is_exclusive()?;
+        let head = recording.head()?;
         let place = recording.start();
         Ok(Self {
             name,
-            bytes_per_second,
-            exclusive,
+            head,
+            line_errors: LineErrors::default(),
             recording,
             place,
             now: Duration::ZERO,
@@ -78,6 +81,7 @@ impl Link for ReplayLink {
         }
         self.sent += same as u64;
         self.now = exchange.at;
+        self.line_errors = exchange.line_errors.unwrap_or(self.line_errors);
         incoming.extend_from_slice(exchange.received);
         Ok(exchange.taken.len())
     }
@@ -88,14 +92,107 @@ impl Link for ReplayLink {
 
     // Deadlines are computed from it, so it is part of the conversation.
     fn bytes_per_second(&self) -> Option<f64> {
-        self.bytes_per_second
+        self.head.bytes_per_second
     }
 
     fn is_exclusive(&self) -> bool {
-        self.exclusive
+        self.head.exclusive
+    }
+
+    fn waits_for_cts(&self) -> bool {
+        self.head.waits_for_cts
     }
 
     fn name(&self) -> String {
         self.name.clone()
+    }
+
+    fn line_errors(&self) -> LineErrors {
+        self.line_errors
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::{Recorder, RecordingFile};
+
+    /// A link that waits for CTS and whose chip counts errors: after each exchange the next of these.
+    struct Line(std::vec::IntoIter<LineErrors>, LineErrors);
+
+    impl Link for Line {
+        fn exchange(
+            &mut self,
+            outgoing: &[u8],
+            incoming: &mut Vec<u8>,
+            _: Duration,
+        ) -> Result<usize, LinkError> {
+            self.1 = self.0.next().unwrap();
+            incoming.extend_from_slice(b"answer");
+            Ok(outgoing.len())
+        }
+
+        fn now(&self) -> Duration {
+            Duration::from_millis(1)
+        }
+
+        fn bytes_per_second(&self) -> Option<f64> {
+            None
+        }
+
+        fn waits_for_cts(&self) -> bool {
+            true
+        }
+
+        fn name(&self) -> String {
+            "a line".to_owned()
+        }
+
+        fn line_errors(&self) -> LineErrors {
+            self.1
+        }
+    }
+
+    #[test]
+    fn a_replay_tells_of_the_line_what_the_recorded_link_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.rec");
+        let framing = LineErrors { framing: 2, ..LineErrors::default() };
+        let all = LineErrors { overrun: 1, parity: 3, framing: 2, breaks: u64::MAX };
+        let seen = [LineErrors::default(), framing, framing, all];
+        let line = Line(Vec::from(seen).into_iter(), LineErrors::default());
+        let file = RecordingFile::prepare(&path, false).unwrap();
+        let mut recorder = Recorder::begin(Box::new(line), file, &()).unwrap();
+        seen.map(|_| recorder.exchange(b"request", &mut Vec::new(), Duration::ZERO).unwrap());
+        drop(recorder);
+        let recording = Recording::read(&path).unwrap();
+        assert_eq!(recording.sent().collect::<Vec<_>>(), [b"request"; 4]);
+        let mut replay = ReplayLink::new(recording).unwrap();
+        assert!(replay.waits_for_cts());
+        for errors in seen {
+            let mut incoming = Vec::new();
+            assert_eq!(replay.exchange(b"request", &mut incoming, Duration::ZERO).unwrap(), 7);
+            assert_eq!((incoming.as_slice(), replay.line_errors()), (b"answer".as_slice(), errors));
+        }
+        let ended = replay.exchange(b"request", &mut Vec::new(), Duration::ZERO);
+        assert!(matches!(ended, Err(LinkError::RecordingEnds { .. })));
+    }
+
+    #[test]
+    fn a_recording_that_knows_nothing_of_the_line_is_replayed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.rec");
+        let head = br#"{"link":"a line","bytes_per_second":1000.0,"run":null}"#;
+        // At 1 ms, 2 bytes sent and 3 received.
+        let exchange = b"\x40\x42\x0f\0\0\0\0\0\x02\0\0\0\x03\0\0\0heard";
+        fs::write(&path, [b"halfrow recording 1\n", &head[..], b"\n", exchange].concat()).unwrap();
+        let mut replay = ReplayLink::new(Recording::read(&path).unwrap()).unwrap();
+        assert_eq!((replay.waits_for_cts(), replay.bytes_per_second()), (false, Some(1000.0)));
+        let mut incoming = Vec::new();
+        assert_eq!(replay.exchange(b"he", &mut incoming, Duration::ZERO).unwrap(), 2);
+        assert_eq!((incoming.as_slice(), replay.now()), (b"ard".as_slice(), Duration::from_millis(1)));
+        assert_eq!(replay.line_errors(), LineErrors::default());
     }
 }
