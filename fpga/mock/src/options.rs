@@ -5,7 +5,8 @@ use halfrow_pipe::{BoardOptions, Fault, Limits, ValueError, parse_word};
 use crate::depth::Depth;
 use crate::faults::{BoardFault, FAULTS};
 
-const LATENCY: Limits = Limits::new("latency", 4, 32);
+const LATENCY: Limits = Limits::new("latency", 4, MOST_LATENCY as i64);
+const MOST_LATENCY: u8 = 32;
 const RING: Limits = Limits::new("ring", 64, 16384);
 const LEAST_BLANKING: Limits = Limits::new("least-blanking", 0, 4095);
 const ROW_BANKS_IN: Limits = Limits::new("row-banks-in", 2, 255);
@@ -86,6 +87,23 @@ pub enum OptionError {
     NoTap {
         /// The tap that the fault would break.
         tap: u8,
+    },
+    /// The fault is of a kernel word that a build of five taps does not have.
+    #[error("a build of five taps has no weight={weight}; give r1, g4 or r5, or leave taps=five out")]
+    NoWeight {
+        /// The weight whose word the fault would spoil.
+        weight: &'static str,
+    },
+    /// The fault claims a latency one pixel clock too long, but no mock board may claim more than this one has.
+    #[error(
+        "the fault claims latency={claimed}, and no board may claim more than {most}; give a latency of at most {}, or another \
+         fault", most - 1
+    )]
+    NoLongerLatency {
+        /// The latency that the board would claim.
+        claimed: u8,
+        /// The longest possible one.
+        most: u8,
     },
     /// The fault confuses the two banks of tables, but this mock board has only one.
     #[error("the fault takes the wrong one of two banks of tables; give table-banks=2, or another fault")]
@@ -194,6 +212,14 @@ impl Options {
     #[must_use]
     pub(crate) fn bank_entries(&self) -> u16 {
         self.entries.max(self.max_height)
+    }
+
+    /// Checks that the board may claim a latency one pixel clock longer than it has.
+    pub(crate) fn check_longer_latency(&self) -> Result<(), OptionError> {
+        if self.latency < MOST_LATENCY {
+            return Ok(());
+        }
+        Err(OptionError::NoLongerLatency { claimed: self.latency.saturating_add(1), most: MOST_LATENCY })
     }
 
     /// Checks whether a build with these options can exist.

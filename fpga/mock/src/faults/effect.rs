@@ -1,6 +1,7 @@
 //! Faults that a run never reaches or a build cannot have, so that whoever asks for one can be told.
 
 use super::BoardFault;
+use crate::core::Weight;
 use crate::options::{BurstBuild, OptionError, Options, TapCount};
 
 /// What a board is given with one generation of tables.
@@ -58,6 +59,13 @@ impl BoardFault {
             {
                 Err(OptionError::NoTap { tap })
             }
+            Self::KernelWord { weight: Weight::G0, .. } if build.taps == TapCount::Five => {
+                Err(OptionError::NoWeight { weight: "g0" })
+            }
+            Self::KernelWord { weight: Weight::G6, .. } if build.taps == TapCount::Five => {
+                Err(OptionError::NoWeight { weight: "g6" })
+            }
+            Self::WrongLatencyClaim => build.check_longer_latency(),
             Self::StaleTable { .. } | Self::LateSwap if build.table_banks == 1 => {
                 Err(OptionError::NoOtherBank)
             }

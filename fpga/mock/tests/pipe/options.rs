@@ -166,6 +166,17 @@ fn a_fault_of_a_part_that_the_build_has_not_got_is_refused() {
     assert!(connect(&line("10")).is_ok());
     let short = [("ring", "64"), ("max-width", "64"), ("fault", "stuck-address"), ("bit", "6")];
     assert_eq!(refused(&short), OptionError::NoAddressLine { bit: 6, last: 5 });
+    let word = |weight, taps| [("fault", "kernel-word"), ("weight", weight), ("taps", taps)];
+    for weight in ["g0", "g6"] {
+        assert_eq!(refused(&word(weight, "five")), OptionError::NoWeight { weight });
+        assert!(connect(&word(weight, "seven")).is_ok(), "{weight}");
+    }
+    for weight in ["r1", "g4", "r5"] {
+        assert!(connect(&word(weight, "five")).is_ok(), "{weight}");
+    }
+    let claim = |latency| [("fault", "wrong-latency-claim"), ("latency", latency)];
+    assert_eq!(refused(&claim("32")), OptionError::NoLongerLatency { claimed: 33, most: 32 });
+    assert!(connect(&claim("31")).is_ok());
     for name in ["stale-table", "stale-table-hidden", "late-swap"] {
         assert_eq!(refused(&[("table-banks", "1"), ("fault", name)]), OptionError::NoOtherBank, "{name}");
     }

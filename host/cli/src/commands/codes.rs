@@ -160,6 +160,8 @@ codes::codes! {
         NoDepth => "board-without-depth",
         NoAddressLine [bit, last] => "fault-without-address-line",
         NoTap [tap] => "fault-without-tap",
+        NoWeight [weight] => "fault-without-weight",
+        NoLongerLatency [claimed, most] => "fault-without-longer-latency",
         NoOtherBank => "fault-without-other-bank",
         NoBursts => "fault-without-bursts",
         = Value,
