@@ -5,7 +5,7 @@ mod defects;
 mod effect;
 mod part;
 
-use halfrow_pipe::{Fault, FaultError, FaultInfo, Parameter, Parameters, Place, Range, ValueError, Values};
+use halfrow_pipe::{Fault, FaultInfo, Parameter, Place, Range, ValueError, Values};
 
 use crate::core::{NODES, Weight};
 
@@ -285,14 +285,4 @@ const fn fault(
 pub fn catalogue() -> impl Iterator<Item = FaultInfo> {
     let pipe = halfrow_pipe::FAULTS.iter().map(|fault| fault.info);
     pipe.chain(FAULTS.iter().map(|fault| fault.info))
-}
-
-impl BoardFault {
-    /// The board fault called `name`. Takes its own parameters out of `parameters` and leaves the others there.
-    ///
-    /// # Errors
-    /// If no board fault has this name or one of its parameters is out of range.
-    pub fn from_name(name: &str, parameters: &mut Parameters) -> Result<Self, FaultError> {
-        Fault::named(FAULTS, name, parameters)
-    }
 }

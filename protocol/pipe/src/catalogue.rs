@@ -218,42 +218,29 @@ impl<T> Fault<T> {
         Self { info: FaultInfo { name, place, what, parameters }, make }
     }
 
+    /// The one of `faults` that is called `name`.
+    pub(crate) fn find<'a>(faults: &'a [Self], name: &str) -> Option<&'a Self> {
+        faults.iter().find(|fault| fault.info.name == name)
+    }
+
     /// Makes the fault. Takes its own parameters out of `parameters` and leaves the others there.
     ///
     /// # Errors
-    /// [`FaultError::Parameter`] when one is out of range, or contradicts another.
+    /// [`FaultError`] when one is out of range, or contradicts another.
     pub fn make(&self, parameters: &mut Parameters) -> Result<T, FaultError> {
         Values::take(self.info.parameters, parameters)
             .and_then(|values| (self.make)(&values))
-            .map_err(|source| FaultError::Parameter { fault: self.info.name.to_owned(), source })
-    }
-
-    /// The fault called `name` among `faults`, made from `parameters` as by [`Self::make`].
-    ///
-    /// # Errors
-    /// [`FaultError`] when none has this name, or a parameter is wrong.
-    pub fn named(faults: &[Self], name: &str, parameters: &mut Parameters) -> Result<T, FaultError> {
-        let fault = faults.iter().find(|fault| fault.info.name == name);
-        fault.ok_or_else(|| FaultError::Unknown { name: name.to_owned() })?.make(parameters)
+            .map_err(|source| FaultError { fault: self.info.name.to_owned(), source })
     }
 }
 
-/// A fault that cannot be made.
+/// A parameter of the fault is unknown, or its value is wrong.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FaultError {
-    /// No fault has this name.
-    #[error("no such fault is called {name}; choose a name from the list of faults")]
-    Unknown {
-        /// The name that was given.
-        name: String,
-    },
-    /// A parameter of the fault is unknown, or its value is wrong.
-    #[error("fault={fault} has a wrong parameter")]
-    Parameter {
-        /// The fault's name.
-        fault: String,
-        /// What is wrong.
-        #[source]
-        source: ValueError,
-    },
+#[error("fault={fault} has a wrong parameter")]
+pub struct FaultError {
+    /// The fault's name.
+    pub fault: String,
+    /// What is wrong.
+    #[source]
+    pub source: ValueError,
 }

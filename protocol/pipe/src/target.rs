@@ -170,9 +170,9 @@ struct Faults<O: BoardOptions> {
 
 impl<O: BoardOptions> Faults<O> {
     fn add(&mut self, name: &str) -> Result<(), TargetError> {
-        let first = if let Some(fault) = FAULTS.iter().find(|fault| fault.info.name == name) {
+        let first = if let Some(fault) = Fault::find(FAULTS, name) {
             self.pipe.replace(fault).map(|fault| fault.info)
-        } else if let Some(fault) = O::FAULTS.iter().find(|fault| fault.info.name == name) {
+        } else if let Some(fault) = Fault::find(O::FAULTS, name) {
             self.board.replace(fault).map(|fault| fault.info)
         } else {
             return Err(TargetError::UnknownFault { name: name.to_owned(), known: Self::known_faults() });

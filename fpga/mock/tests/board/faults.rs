@@ -1,9 +1,7 @@
 //! Faults of the core: each changes what it says, and nothing else.
 
-use std::collections::BTreeMap;
-
-use halfrow_mock::{BoardFault, FAULTS, Kernel, Node, Weight, catalogue};
-use halfrow_pipe::{FaultError, Parameters, Range, ValueError};
+use halfrow_mock::{BoardFault, FAULTS, Kernel, Node, Weight, board_fault, catalogue};
+use halfrow_pipe::{FaultError, Parameters, Place, Range, TargetError, ValueError};
 
 use crate::support::{binding, constant, core, fault, hermite, noise_row, row_out, run, unchanged};
 
@@ -125,9 +123,10 @@ fn no_name_is_in_the_catalogue_twice() {
 fn a_fault_takes_its_own_parameters_and_leaves_the_others() {
     let given = [("row", "7"), ("latency", "9"), ("hidden", "true")];
     let mut parameters = given.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
-    let fault = BoardFault::from_name("row-factor", &mut parameters).unwrap();
+    let row_factor = FAULTS.iter().find(|fault| fault.info.name == "row-factor").unwrap();
+    let fault = row_factor.make(&mut parameters).unwrap();
     assert_eq!(fault, BoardFault::RowFactor { row: 7, bit: 18, hidden: true });
-    assert_eq!(parameters, BTreeMap::from([("latency".to_owned(), "9".to_owned())]));
+    assert_eq!(parameters, Parameters::from([("latency".to_owned(), "9".to_owned())]));
 }
 
 #[test]
@@ -137,15 +136,9 @@ fn a_kernel_word_is_named_by_node_and_weight() {
 }
 
 #[test]
-fn an_unknown_fault_is_refused() {
-    let refused = BoardFault::from_name("flip", &mut BTreeMap::new());
-    assert_eq!(refused, Err(FaultError::Unknown { name: "flip".to_owned() }));
-}
-
-#[test]
 fn a_parameter_out_of_range_is_refused_with_its_range() {
-    let mut parameters = BTreeMap::from([("bit".to_owned(), "12".to_owned())]);
     let source = ValueError::OutOfRange { key: "bit", value: 12, least: 0, most: 11 };
-    let refused = BoardFault::from_name("stuck-data", &mut parameters);
-    assert_eq!(refused, Err(FaultError::Parameter { fault: "stuck-data".to_owned(), source }));
+    let source = FaultError { fault: "stuck-data".to_owned(), source };
+    let refused = board_fault(&[("fault", "stuck-data"), ("bit", "12")]);
+    assert_eq!(refused, Err(TargetError::Fault { place: Place::Board, source }));
 }

@@ -1,12 +1,11 @@
 //! What the tests feed to the board, made by the paper's formulas and the sample formula of DATAPATH.md.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use halfrow_conformance::material;
 use halfrow_mock::{
     BoardFault, Core, Depth, Entering, Kernel, Leaving, NODES, Node, Options, Player, RowBinding, RowIn,
-    RowOut, Settings, Tables, UNSTRETCHED,
+    RowOut, Settings, Tables, UNSTRETCHED, board_fault,
 };
 
 pub(crate) use halfrow_conformance::material::{GOLDEN_FACTOR, crc_of_words, factors, noise_row};
@@ -83,11 +82,7 @@ pub(crate) fn row_out(outputs: &[(usize, Leaving)], width: u16, index: usize) ->
 
 /// The fault called `name`, with parameters in a target string's spelling.
 pub(crate) fn fault(name: &str, parameters: &[(&str, &str)]) -> BoardFault {
-    let mut parameters: BTreeMap<_, _> =
-        parameters.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let fault = BoardFault::from_name(name, &mut parameters).unwrap();
-    assert!(parameters.is_empty(), "the fault left {parameters:?}");
-    fault
+    board_fault(&[&[("fault", name)], parameters].concat()).unwrap().unwrap()
 }
 
 /// A player and its tables for 64 columns and as many rows as there are factors, with the tables committed for frame 0.

@@ -4,10 +4,7 @@ use std::num::NonZeroU64;
 use std::time::Duration;
 
 use halfrow_mock::{ConnectError, OptionError, Options, connect};
-use halfrow_pipe::{
-    BoardOptions, FAULTS, Fault, FaultError, Parameters, PipeOptions, PipeSetup, Place, TargetError,
-    ValueError,
-};
+use halfrow_pipe::{BoardOptions, FaultError, PipeOptions, PipeSetup, Place, TargetError, ValueError};
 
 use crate::support::{refusal, wire};
 
@@ -136,16 +133,8 @@ fn parameters_out_of_range_are_refused_by_name() {
 fn a_fault_strikes_at_one_place() {
     let (error, _) = refusal(&[("fault", "flip"), ("rate", "0.1"), ("byte", "3")]);
     let two_places = ValueError::TwoPlaces { first: "byte", second: "rate" };
-    let expected = FaultError::Parameter { fault: "flip".to_owned(), source: two_places };
+    let expected = FaultError { fault: "flip".to_owned(), source: two_places };
     assert!(matches!(error, TargetError::Fault { source, .. } if source == expected));
-}
-
-#[test]
-fn a_name_that_is_no_fault_of_the_pipe_is_refused_and_takes_nothing() {
-    let mut parameters = Parameters::from([("rate".to_owned(), "1".to_owned())]);
-    let name = "late".to_owned();
-    assert_eq!(Fault::named(FAULTS, "late", &mut parameters), Err(FaultError::Unknown { name }));
-    assert_eq!(parameters.len(), 1);
 }
 
 #[test]

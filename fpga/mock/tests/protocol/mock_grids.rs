@@ -8,8 +8,7 @@ use halfrow_conformance::grids::{greeted, narrow};
 use halfrow_conformance::material::{drawn_grid, hermite};
 use halfrow_conformance::uploads::{TableSet, span};
 use halfrow_conformance::{Bench, Build, ReceivedPacket, suite};
-use halfrow_mock::{Board, BoardFault, FAULTS, Options};
-use halfrow_pipe::Parameters;
+use halfrow_mock::{Board, BoardFault, FAULTS, Options, board_fault};
 use halfrow_protocol::message::{
     Bank, Burst, BurstMode, Commit, Configuration, Hello, RefusalCode, Request, Reset, ResetLevel, Shape,
     Table,
@@ -72,9 +71,7 @@ fn grid(height: u16, seed: u32) -> TableSet {
 
 /// The fault of this name, with parameters that make it show in small frames.
 fn fault(name: &str, given: &[(&str, &str)]) -> BoardFault {
-    let mut given: Parameters =
-        given.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-    BoardFault::from_name(name, &mut given).unwrap()
+    board_fault(&[&[("fault", name)], given].concat()).unwrap().unwrap()
 }
 
 /// All that a host hears from a board that plays frames of four rows through grids and makes frames itself, is given a damaged

@@ -141,10 +141,6 @@ codes::codes! {
         Ambiguous [key, pipe, board] => "fault-option-ambiguous",
         Duplicate [key] => "board-option-repeated",
     }
-    FaultError {
-        Unknown [name] => "fault-name-unknown",
-        Parameter [fault] => "fault-parameter-wrong",
-    }
     ValueError {
         NotANumber [key, value, least, most] => "option-is-no-whole-number",
         OutOfRange [key, value, least, most] => "option-out-of-range",
@@ -166,6 +162,8 @@ codes::codes! {
         NoBursts => "fault-without-bursts",
         = Value,
     }
+    ;
+    FaultError [fault] => "fault-parameter-wrong"
     ;
     Unheard => "signals-unheard"
 }

@@ -6,9 +6,10 @@ use std::iter;
 use halfrow::compare::Comparison;
 use halfrow::diagnosis::{Case, Uploaded, diagnose};
 use halfrow::result::{Evidence, FrameReport, FrameTiming, Suspect};
-use halfrow_mock::{BoardFault, Depth, GridShape, Node, Options, Player, RowIn, Settings, Tables};
+use halfrow_mock::{
+    BoardFault, Depth, GridShape, Node, Options, Player, RowIn, Settings, Tables, board_fault,
+};
 use halfrow_model::{BitDepth, Camera, Equidistant, Frame, Geometry, Interpolant, Kernel, TableSet, correct};
-use halfrow_pipe::Parameters;
 
 use crate::scenes::{Scene, scene};
 
@@ -262,13 +263,9 @@ fn fetch(player: &mut Player, found: &mut [Vec<u16>]) {
 /// The fault that a target string like `stuck-data,bit=5` asks for.
 pub(crate) fn fault(text: &str) -> BoardFault {
     let mut words = text.split(',');
-    let name = words.next().unwrap();
-    let pair = |word: &str| {
-        let (key, value) = word.split_once('=').unwrap();
-        (key.to_owned(), value.to_owned())
-    };
-    let mut parameters: Parameters = words.map(pair).collect();
-    BoardFault::from_name(name, &mut parameters).unwrap()
+    let mut options = vec![("fault", words.next().unwrap())];
+    options.extend(words.map(|word| word.split_once('=').unwrap()));
+    board_fault(&options).unwrap().unwrap()
 }
 
 /// Small frames in a ring of a single row.

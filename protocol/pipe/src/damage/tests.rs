@@ -11,7 +11,7 @@ const STREAM: &[u8] = b"\0abc\0\0defg\0hi\0";
 fn damage(name: &str, parameters: &[(&str, &str)]) -> Damage {
     let mut parameters: Parameters =
         parameters.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let fault = Fault::named(FAULTS, name, &mut parameters).unwrap();
+    let fault = Fault::find(FAULTS, name).unwrap().make(&mut parameters).unwrap();
     assert_eq!(parameters, Parameters::new(), "what was given is of use");
     Damage::new(Some(fault), Side::Host)
 }
@@ -241,15 +241,15 @@ fn a_fault_does_not_see_how_the_stream_is_cut() {
 #[test]
 fn a_direction_can_be_spared() {
     let mut parameters = Parameters::from([("toward".to_owned(), "board".to_owned())]);
-    let fault = Fault::named(FAULTS, "drop", &mut parameters).unwrap();
+    let fault = Fault::find(FAULTS, "drop").unwrap().make(&mut parameters).unwrap();
     assert!(matches!(Damage::new(Some(fault), Side::Host), Damage::None));
     assert!(matches!(Damage::new(Some(fault), Side::Board), Damage::Bytes(_)));
 }
 
 #[test]
 fn the_directions_throw_their_own_dice() {
-    let fault =
-        Fault::named(FAULTS, "drop", &mut Parameters::from([("rate".to_owned(), "0.5".to_owned())])).unwrap();
+    let mut parameters = Parameters::from([("rate".to_owned(), "0.5".to_owned())]);
+    let fault = Fault::find(FAULTS, "drop").unwrap().make(&mut parameters).unwrap();
     let left = |side| {
         let mut out = Vec::new();
         Damage::new(Some(fault), side).pass(&(1..=100).collect::<Vec<u8>>(), &mut out);
