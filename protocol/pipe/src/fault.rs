@@ -28,7 +28,6 @@ const AT_PACKET: Parameter = Parameter::new(
     None,
     "strikes once, at the packet of this number, a run between zero bytes",
 );
-/// Fewer than one would leave no packet whole.
 const AT_EVERY: Parameter = Parameter::new(
     EVERY,
     Range::Whole(1, 1_000_000_000_000),
@@ -231,8 +230,8 @@ fn occurrence(
     let occurrence = match key {
         RATE => Occurrence::Rate(values.decimal(key)?),
         EVERY => {
-            let every: u64 = values.whole(key)?;
-            NonZeroU64::new(every).map_or(Occurrence::At(0), Occurrence::Every)
+            let every = NonZeroU64::new(values.whole(key)?).ok_or(ValueError::Missing { key })?;
+            Occurrence::Every(every)
         }
         _ => Occurrence::At(values.whole(key)?),
     };
