@@ -165,7 +165,9 @@ mod tests {
         let line = Line(Vec::from(seen).into_iter(), LineErrors::default());
         let file = RecordingFile::prepare(&path, false).unwrap();
         let mut recorder = Recorder::begin(Box::new(line), file, &()).unwrap();
-        seen.map(|_| recorder.exchange(b"request", &mut Vec::new(), Duration::ZERO).unwrap());
+        for _ in seen {
+            recorder.exchange(b"request", &mut Vec::new(), Duration::ZERO).unwrap();
+        }
         drop(recorder);
         let recording = Recording::read(&path).unwrap();
         assert_eq!(recording.sent().collect::<Vec<_>>(), [b"request"; 4]);
