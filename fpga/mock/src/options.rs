@@ -96,8 +96,7 @@ pub enum OptionError {
     },
     /// The fault claims a latency one pixel clock too long, but no mock board may claim more than this one has.
     #[error(
-        "the fault claims latency={claimed}, and no board may claim more than {most}; give a latency of at most {}, or another \
-         fault", most - 1
+        "the fault claims latency={claimed}, and no board may claim more than {most}; give a shorter latency, or another fault"
     )]
     NoLongerLatency {
         /// The latency that the board would claim.
