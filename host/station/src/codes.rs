@@ -236,6 +236,7 @@ codes::codes! {
     AgainError {
         Refused [serial, when] => "unit-passed-already",
         Asked [serial, when] => "unit-passed-already-asks",
+        NotAtPlant [serial, when] => "unit-passed-not-at-plant",
     }
     DiskError {
         Refused [folder, what] => "disk-refused",
@@ -379,11 +380,6 @@ pub(crate) fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
 /// Why a command has no result.
 pub(crate) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
     program::problem(exit, error, known)
-}
-
-/// What a check found, as a problem with its code.
-pub(crate) fn of_found(found: &(dyn Error + 'static)) -> Problem {
-    Problem::by(found, known)
 }
 
 /// Every list of the station's own codes.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use halfrow::result::Problem;
 use halfrow::words::{count, verb};
 use serde_json::json;
 
@@ -41,8 +42,8 @@ pub(super) fn tell(checked: &Checked, is_json: bool) -> Result<Exit, Failure> {
 
 fn document(checked: &Checked, exit: Exit) -> Result<String, Failure> {
     let Checked { runs, open, evidence, pruned, unread, superseded, faults } = checked;
-    let superseded: Vec<_> = superseded.iter().map(|note| codes::of_found(note)).collect();
-    let faults: Vec<_> = faults.iter().map(|fault| codes::of_found(fault)).collect();
+    let superseded: Vec<_> = superseded.iter().map(|note| Problem::by(note, codes::known)).collect();
+    let faults: Vec<_> = faults.iter().map(|fault| Problem::by(fault, codes::known)).collect();
     let rest = json!({
         "runs": runs, "open": open, "evidence": evidence, "pruned": pruned, "unread": unread, "superseded": superseded,
         "faults": faults

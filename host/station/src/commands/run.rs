@@ -150,7 +150,7 @@ impl Arguments {
 pub(super) struct NoMock;
 
 fn refused_again(folder: &Folder, plan: &Plan, serial: &str, arguments: &Arguments) -> Result<(), Failure> {
-    match folder.again(plan, serial, "say --again")? {
+    match folder.again(plan, serial, "say --again", false)? {
         None => Ok(()),
         Some(AgainError::Asked { .. }) if arguments.again => Ok(()),
         Some(error) => Err(Failure::call(error)),

@@ -273,10 +273,11 @@ impl AtWork {
         let asked = &mut self.lanes.get_mut(lane)?.asked;
         let was_asked = asked.take().as_ref() == Some(&of.serial);
         let folder = Folder::new(&self.shared.settings.data);
-        if let Some(why) = unsent::refuses(&self.shared.settings, &folder) {
+        let settings = &self.shared.settings;
+        if let Some(why) = unsent::refuses(settings, &folder) {
             return Some(why);
         }
-        match folder.again(plan, &of.serial, "scan it once more") {
+        match folder.again(plan, &of.serial, "scan it once more", settings.is_green_at_plant()) {
             Ok(None) => None,
             Ok(Some(AgainError::Asked { .. })) if was_asked => None,
             Ok(Some(error)) => {

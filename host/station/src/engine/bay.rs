@@ -139,11 +139,10 @@ pub(super) fn hook(shared: &Shared, lane: usize, shown: Option<&Shown>) {
 /// reports after `patience` that it does not, or at once that it never will as things are.
 fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
     shared.figures.saved(&saved.record);
-    let Settings { data, plant, .. } = &shared.settings;
-    if !plant.as_ref().is_some_and(|plant| plant.is_green_at_plant) {
+    if !shared.settings.is_green_at_plant() {
         return Event::Ended(shown(saved));
     }
-    let (folder, until) = (Folder::new(data), Instant::now() + patience);
+    let (folder, until) = (Folder::new(&shared.settings.data), Instant::now() + patience);
     match awaited(&folder, &saved.record.run.id, &|| Instant::now() >= until) {
         Ok(Sent::Yes) => Event::Ended(shown(saved)),
         Ok(Sent::NotYet) => Event::NotAtPlant { why: Saying::NotAtPlant.into() },

@@ -204,6 +204,11 @@ impl Settings {
         lane.plans.iter().filter_map(|&plan| self.plans.get(plan))
     }
 
+    /// Whether a verdict is shown only when the plant has it.
+    pub(crate) fn is_green_at_plant(&self) -> bool {
+        self.plant.as_ref().is_some_and(|plant| plant.is_green_at_plant)
+    }
+
     /// The names of all sinks, the plant included.
     pub(crate) fn sink_names(&self) -> impl Iterator<Item = &str> {
         self.plant.iter().map(|_| SINK_OF_PLANT).chain(self.sinks.iter().map(|sink| sink.name.as_str()))

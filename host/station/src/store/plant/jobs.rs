@@ -254,7 +254,7 @@ impl Plant {
         }
         let passed = self
             .carry_out("to tell whether a unit passed", |from| retest_policy::passed(from, plan, serial))?;
-        Ok(passed.map(|ms| AgainError::refused(serial, ms)))
+        Ok(passed.map(|passed| AgainError::refused(serial, &passed)))
     }
 
     /// Ends a job whose unit must not be judged, for this reason.

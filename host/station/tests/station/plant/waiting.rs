@@ -6,7 +6,7 @@ use halfrow_station::store::{Folder, Store};
 
 use super::server::Server;
 use crate::common::{plant_settings, until, until_found};
-use crate::lanes::floor::{SERIALS, Station};
+use crate::lanes::floor::{SERIALS, Station, plan};
 
 /// A station of this name, with `more` under `[plant]` in its settings.
 pub(crate) fn station(server: &Server, name: &str, more: &str) -> Station {
@@ -125,4 +125,39 @@ fn a_lane_that_waits_for_a_plant_says_why_the_plant_never_takes_its_result() {
     let unsaved = running.state("1", "UNSAVED");
     assert!(unsaved["note"].as_str().unwrap().contains("no such character"), "{unsaved}");
     assert_eq!(running.end().0, Some(0));
+}
+
+/// A station that is started again does not know which board was kept apart.
+#[test]
+fn a_board_that_passed_is_kept_apart_until_the_plant_has_that() {
+    let mut server = Server::prepared();
+    server.kill();
+    let stations = [("12", "refuse"), ("13", "ask")].map(|(name, again)| {
+        let station = station(&server, name, "green = \"plant\"");
+        let plan = plan().replace("device = ", &format!("again = \"{again}\"\ndevice = "));
+        fs::write(station.path("plan.toml"), plan).unwrap();
+        let mut running = station.start();
+        running.scan(SERIALS[0]);
+        running.state("1", "UNSAVED");
+        assert_eq!(running.end().0, Some(0));
+        let mut running = station.start();
+        // Nor does it help to scan it once more.
+        for _ in 0..2 {
+            running.scan(SERIALS[0]);
+            let (is_taken, said) = running.answer(SERIALS[0]);
+            assert!(!is_taken && said.contains("the plant does not have that result yet"), "{said}");
+            assert!(said.contains("; keep this board apart"), "{said}");
+        }
+        (station, running)
+    });
+    server.again();
+    let then = ["put it with the boards that passed", "scan it once more to test it again"];
+    for ((station, mut running), then) in stations.into_iter().zip(then) {
+        await_sent(&station);
+        running.scan(SERIALS[0]);
+        let (is_taken, said) = running.answer(SERIALS[0]);
+        assert!(!is_taken && said.ends_with(then), "{said}");
+        assert_eq!(running.end().0, Some(0));
+        assert_eq!(station.query("SELECT count(*) FROM run"), ["1"]);
+    }
 }
