@@ -18,7 +18,7 @@ use super::{Input, LaneEvent};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::lane::Message;
-use crate::outbox::{Sent, awaited};
+use crate::outbox::{Sent, awaited, needs_person};
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
 use crate::settings::{Hook, Settings};
@@ -145,7 +145,9 @@ fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
     let (folder, until) = (Folder::new(&shared.settings.data), Instant::now() + patience);
     match awaited(&folder, &saved.record.run.id, &|| Instant::now() >= until) {
         Ok(Sent::Yes) => Event::Ended(shown(saved)),
-        Ok(Sent::NotYet) => Event::NotAtPlant { why: Saying::NotAtPlant.into() },
+        Ok(Sent::NotYet) => {
+            Event::NotAtPlant { why: Said { causes: needs_person(&folder), ..Saying::NotAtPlant.into() } }
+        }
         Ok(Sent::Refused(why)) => Event::NotAtPlant { why },
         Err(error) => unsaved(&error),
     }

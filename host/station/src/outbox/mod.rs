@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 pub use crate::clock::HeardClock;
 pub use plant::PlantSink;
-pub(crate) use sent::{Sent, awaited};
+pub(crate) use sent::{Sent, awaited, needs_person};
 pub(crate) use sinks::SinkError;
 pub use sinks::{SinkSettingsError, open};
 pub use standing::Standing;

@@ -13,6 +13,9 @@ const PATIENCE: Duration = Duration::from_millis(LEASE_MS.unsigned_abs());
 /// database.
 const LOOK: Duration = Duration::from_millis(200);
 
+/// The codes of reasons why the plant does not take something that may end without a person.
+const PASSING: [&str; 3] = ["plant-refuses", "plant-without-run", "plant-kept-nothing"];
+
 /// The state of a run at the plant.
 #[derive(Debug)]
 pub(crate) enum Sent {
@@ -50,6 +53,15 @@ pub(crate) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) ->
     }
 }
 
+/// Why a person has to act before the plant takes anything, with the causes of that; empty if it may take it without one.
+pub(crate) fn needs_person(folder: &Folder) -> Vec<Said> {
+    // If that cannot be read now, it is looked for again.
+    let said = said_last(folder).ok().flatten().filter(|said| !PASSING.contains(&said.code.as_str()));
+    let Some(mut said) = said else { return Vec::new() };
+    let causes = std::mem::take(&mut said.causes);
+    [said].into_iter().chain(causes).collect()
+}
+
 /// What the plant said last about anything that will be tried again.
 fn said_last(folder: &Folder) -> Result<Option<Said>, StoreError> {
     let unsent = Snapshot::take(folder)?.unsent()?;
@@ -59,7 +71,13 @@ fn said_last(folder: &Folder) -> Result<Option<Said>, StoreError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::codes;
     use crate::store::Store;
+
+    #[test]
+    fn every_reason_that_may_end_without_a_person_exists() {
+        assert!(PASSING.iter().all(|code| codes::all().contains(&(*code).into())), "{PASSING:?}");
+    }
 
     #[test]
     fn what_waits_for_a_person_is_waited_for_no_longer() {

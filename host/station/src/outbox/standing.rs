@@ -1,4 +1,5 @@
-//! What the log says of a sink: once that it takes nothing or not all, and once that it does again.
+//! What the log says of a sink: once for each reason that it takes nothing, once that it does not take all, and once that it
+//! does again.
 
 use halfrow::words::{count, verb};
 
@@ -7,10 +8,10 @@ use crate::said::Said;
 use crate::store::{Entry, Kind, SINK_OF_PLANT, StoreError};
 
 /// The state of a sink, as far as the log has reported it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Standing {
-    /// It was away.
-    is_away: bool,
+    /// The code of why it was away.
+    away: Option<String>,
     /// It did not take something for a time.
     is_behind: bool,
     /// How much it did not have when that was read last.
@@ -46,8 +47,9 @@ impl Standing {
 
     /// Notes that the sink is not there.
     pub(super) fn away(&mut self, sink: &str, said: &Said) {
-        if !self.is_away {
-            self.is_away = true;
+        // A plant that is put back is unreachable first, and only what it says later calls for a person.
+        if self.away.as_ref() != Some(&said.code) {
+            self.away = Some(said.code.clone());
             tracing::warn!("{} takes nothing, and all waits for it: {said}", called(sink));
         }
     }
@@ -60,13 +62,12 @@ impl Standing {
         sent: usize,
         left: impl FnOnce() -> Result<Backlog, StoreError>,
     ) {
-        if !self.is_away && !self.is_behind {
+        if self.away.is_none() && !self.is_behind {
             return;
         }
         // If that cannot be read now, it is tried after the next entry.
         let Ok(Backlog { entries, dead, was_tried }) = left() else { return };
-        if self.is_away {
-            self.is_away = false;
+        if self.away.take().is_some() {
             let waited = u64::from(entries - dead) + sent as u64;
             tracing::warn!("{} answers again: {waited} waited", called(sink));
         }

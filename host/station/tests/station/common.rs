@@ -180,6 +180,20 @@ pub(crate) fn check(data: &Path) -> Did {
     Command::new(program()).arg("check").arg("--data").arg(data).output().unwrap().into()
 }
 
+/// Waits until the log has `count` lines with `of`, and fails if it has more.
+pub(crate) fn logged(log: &Path, count: usize, of: &str) {
+    let begun = Instant::now();
+    loop {
+        let text = fs::read_to_string(log).unwrap_or_default();
+        let found = text.lines().filter(|line| line.contains(of)).count();
+        if found == count {
+            return;
+        }
+        assert!(found < count && begun.elapsed() < HANG, "{found} of {of}: {text}");
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
 /// Reads the database of this folder without the program: the first value of each row.
 pub(crate) fn query(data: &Path, text: &str) -> Vec<String> {
     let database = rusqlite::Connection::open(data.join("station.db")).unwrap();

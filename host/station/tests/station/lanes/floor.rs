@@ -48,6 +48,14 @@ impl Station {
         self.started(Command::new(common::program()))
     }
 
+    /// Starts the station, whose log goes to the file that is returned with it.
+    pub(crate) fn start_logging(&self) -> (Running, PathBuf) {
+        let log = self.path("log");
+        let mut logging = Command::new("sh");
+        logging.args(["-c", "exec \"$0\" \"$@\" 2>\"$LOG\""]).arg(common::program()).env("LOG", &log);
+        (self.started(logging), log)
+    }
+
     /// Starts the station by this call of its program.
     pub(crate) fn started(&self, mut program: Command) -> Running {
         let mut child = program

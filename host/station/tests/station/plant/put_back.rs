@@ -7,7 +7,8 @@ use super::refused::did;
 use super::sent::{forget, send};
 use super::server::Server;
 use super::tables::is_as;
-use crate::common::{NO_AUDIT, query};
+use super::waiting::{await_sent, station};
+use crate::common::{NO_AUDIT, SERIALS, logged, query};
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
 
@@ -72,6 +73,35 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     is_as(&server, &Made::at(folder));
     let told = server.rows("SELECT operator_id, subject, detail FROM audit WHERE act = 'send-again'");
     assert_eq!(told, [["engel", "plant", "its disk broke"]]);
+}
+
+/// Its connections end before it is another one, so that this is never the first reason.
+#[test]
+fn a_station_at_work_says_what_to_do_about_a_plant_that_is_put_back() {
+    let server = Server::prepared();
+    let station = station(&server, "12", "green = \"plant\"");
+    let (mut running, log) = station.start_logging();
+    running.scan(SERIALS[0]);
+    running.state("1", "PASS");
+    await_sent(&station);
+    let [mut outside, mut inside] = ["postgres", "plant"].map(|database| server.client(database));
+    outside.batch_execute("ALTER DATABASE plant ALLOW_CONNECTIONS false").unwrap();
+    let others = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = 'plant' AND pid <> pg_backend_pid()";
+    inside.batch_execute(others).unwrap();
+    running.scan(SERIALS[1]);
+    let unsaved = running.state("1", "UNSAVED");
+    assert!(unsaved["note"].as_str().unwrap().ends_with("; the lane waits for the plant"), "{unsaved}");
+    let told = "WARN the plant takes nothing, and all waits for it: ";
+    logged(&log, 1, told);
+    inside.batch_execute("TRUNCATE run CASCADE").unwrap();
+    outside.batch_execute("ALTER DATABASE plant ALLOW_CONNECTIONS true").unwrap();
+    logged(&log, 1, &format!("{told}the plant has lost the run "));
+    running.wait("why the lane waits in vain", |news| {
+        let note = news["note"].as_str().unwrap_or_default();
+        note.contains("not at the plant yet") && note.ends_with("by `halfrow-station outbox again plant`")
+    });
+    assert_eq!(running.end().0, Some(0));
+    logged(&log, 2, told);
 }
 
 /// The plant gets this run, and nothing else that the station has.

@@ -9,16 +9,15 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
-use std::time::{Duration, Instant};
 
 use base64::Engine as _;
 use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{SEND, command, did, send};
-use crate::common::{Did, program, query, until};
+use crate::common::{Did, logged, query, until};
 use crate::history::released::history;
-use crate::lanes::floor::{HANG, SERIALS, Station};
+use crate::lanes::floor::{SERIALS, Station};
 use crate::plant::link::certificates;
 
 pub(super) struct Server {
@@ -323,20 +322,6 @@ fn a_proxy_of_the_settings_carries_what_it_cannot_read() {
     }
 }
 
-/// Waits until the log has `count` lines with `of`, and fails if it has more.
-fn logged(log: &Path, count: usize, of: &str) {
-    let begun = Instant::now();
-    loop {
-        let text = fs::read_to_string(log).unwrap_or_default();
-        let found = text.lines().filter(|line| line.contains(of)).count();
-        if found == count {
-            return;
-        }
-        assert!(found < count && begun.elapsed() < HANG, "{found} of {of}: {text}");
-        thread::sleep(Duration::from_millis(50));
-    }
-}
-
 #[test]
 fn the_log_says_once_that_a_sink_takes_nothing_and_once_that_it_does_again() {
     let server = Server::start(None);
@@ -344,10 +329,7 @@ fn the_log_says_once_that_a_sink_takes_nothing_and_once_that_it_does_again() {
     let share = "[[sink]]\nname = \"share\"\nfolder = \"share\"\n";
     let mes = sink(&format!("http://127.0.0.1:{}/", server.port), "");
     let station = Station::with(&["mock"], &format!("{share}{mes}"));
-    let log = station.path("log");
-    let mut logging = Command::new("sh");
-    logging.args(["-c", "exec \"$0\" \"$@\" 2>\"$LOG\""]).arg(program()).env("LOG", &log);
-    let mut running = station.started(logging);
+    let (mut running, log) = station.start_logging();
     let told = |count: usize, of: &str| logged(&log, count, of);
     running.scan(SERIALS[0]);
     running.state("1", "PASS");
