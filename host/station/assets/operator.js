@@ -108,9 +108,11 @@ function lane(event, isNews) {
 }
 
 // A failed hook is no answer to a scan.
-function hook({ lane, said }) {
+function hook({ lane, serial, said }) {
   noticed = lane;
-  put("notice", `${by("notice").dataset.lane} ${lane}: ${said}`);
+  // By now another board may be in the lane.
+  const unit = serial ? `, ${serial}` : "";
+  put("notice", `${by("notice").dataset.lane} ${lane}${unit}: ${said}`);
   play("ERROR");
 }
 

@@ -238,7 +238,14 @@ impl AtWork {
             LaneEvent::Doing { run, what, rows } => {
                 self.tell(&News::Doing { lane: name(), run, what, rows });
             }
-            LaneEvent::Hook { run, said } => self.tell(&News::Hook { lane: name(), run, said }),
+            LaneEvent::Hook { of, said } => {
+                let lane = name();
+                let [run, serial] = of.map_or([None, None], |of| of.map(Some));
+                // Pages show it only until the next board is judged in the lane.
+                let unit = serial.as_ref().map_or_else(String::new, |serial| format!(", {serial}"));
+                tracing::warn!("lane {lane}{unit}: {said}");
+                self.tell(&News::Hook { lane, run, serial, said });
+            }
         }
     }
 
@@ -332,8 +339,7 @@ impl AtWork {
 
     /// Starts the hooks for what is shown, or for that nothing is any more, or reports why not.
     fn hook(&mut self, lane: usize, shown: Option<Shown>) {
-        let (on, run) =
-            (shown.as_ref().map(|shown| shown.verdict), shown.as_ref().map(|shown| shown.run.clone()));
+        let (on, unit) = (shown.as_ref().map(|shown| shown.verdict), shown.as_ref().map(bay::named));
         let Some(of) = self.lanes.get_mut(lane).filter(|_| self.shared.hooks(on).next().is_some()) else {
             return;
         };
@@ -347,7 +353,7 @@ impl AtWork {
             Err(NotStarted::Behind(verdicts)) => Saying::HooksBehind { verdicts },
             Err(NotStarted::NoThread(error)) => Saying::NoThread { error: error.to_string() },
         };
-        self.heard(lane, LaneEvent::Hook { run, said: why.into() });
+        self.heard(lane, LaneEvent::Hook { of: unit, said: why.into() });
     }
 
     fn begin(&mut self, lane: usize, accepted: Accepted) -> std::io::Result<JoinHandle<()>> {

@@ -122,6 +122,11 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
     })
 }
 
+/// The run whose verdict is shown, and its serial number.
+pub(super) fn named(shown: &Shown) -> [String; 2] {
+    [shown.run.clone(), shown.serial.clone()]
+}
+
 /// Runs the hooks for what is shown on `lane`, or for that nothing is any more, one after another.
 pub(super) fn hook(shared: &Shared, lane: usize, shown: Option<&Shown>) {
     let name = shared.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
@@ -131,7 +136,7 @@ pub(super) fn hook(shared: &Shared, lane: usize, shown: Option<&Shown>) {
             Ok(Err(error)) => Said::of(&error),
             Err(fault) => Said::of(&fault),
         };
-        shared.tell(lane, LaneEvent::Hook { run: shown.map(|shown| shown.run.clone()), said });
+        shared.tell(lane, LaneEvent::Hook { of: shown.map(named), said });
     }
 }
 

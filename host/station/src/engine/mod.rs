@@ -59,8 +59,16 @@ enum Input {
 #[derive(Debug)]
 enum LaneEvent {
     Happened(Event),
-    Doing { run: String, what: String, rows: Option<(u64, u64)> },
-    Hook { run: Option<String>, said: Said },
+    Doing {
+        run: String,
+        what: String,
+        rows: Option<(u64, u64)>,
+    },
+    /// With the run and the serial number whose verdict the hook should have shown, if any.
+    Hook {
+        of: Option<[String; 2]>,
+        said: Said,
+    },
 }
 
 /// A station at work.

@@ -48,6 +48,9 @@ pub enum News {
         /// The run; `None` when the hook should have shown that there is no verdict any more.
         #[serde(skip_serializing_if = "Option::is_none")]
         run: Option<String>,
+        /// The serial number of that run's unit, which may have left the lane since.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        serial: Option<String>,
         /// What went wrong.
         #[serde(serialize_with = "said::as_text")]
         said: Said,
@@ -141,6 +144,7 @@ mod tests {
         let news = || News::Hook {
             lane: "1".to_owned(),
             run: Some("r".to_owned()),
+            serial: Some("S1".to_owned()),
             said: Saying::OutByPerson.into(),
         };
         let (slow, quick) = (listeners.add(std::iter::empty()), listeners.add(std::iter::once(news())));

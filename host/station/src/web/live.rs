@@ -52,6 +52,7 @@ pub(super) enum EventKind {
     Scan(Became),
     Hook {
         lane: String,
+        serial: Option<String>,
         said: Said,
     },
 }
@@ -159,7 +160,7 @@ impl Live {
             News::Scan { number, scanned, is_taken, lane, said } => {
                 EventKind::Scan(Became { number, scanned, is_taken, lane, said })
             }
-            News::Hook { lane, said, .. } => EventKind::Hook { lane, said },
+            News::Hook { lane, serial, said, .. } => EventKind::Hook { lane, serial, said },
         };
         let answered = if let EventKind::Scan(became) = &what { Some(became.clone()) } else { None };
         self.tell(what);

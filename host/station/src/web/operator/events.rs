@@ -81,8 +81,9 @@ fn news(visit: &Visit, told: &Event) -> String {
         EventKind::Scan(Became { is_taken, lane, .. }) => {
             event_text(id, "scan", &json!({ "is_taken": is_taken, "lane": lane }))
         }
-        EventKind::Hook { lane, said } => {
-            event_text(id, "hook", &json!({ "lane": lane, "said": visit.words.tell(said).text }))
+        EventKind::Hook { lane, serial, said } => {
+            let said = visit.words.tell(said).text;
+            event_text(id, "hook", &json!({ "lane": lane, "serial": serial, "said": said }))
         }
     }
 }

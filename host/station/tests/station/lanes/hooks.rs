@@ -4,7 +4,7 @@ use std::process::Command;
 
 use super::floor::{SERIALS, Station};
 use super::stuck::Stuck;
-use crate::common::{program, script, until};
+use crate::common::{logged, program, script, until};
 
 /// The hook records its arguments, and fails if the record is not stored by then, or if it is given the plant's password.
 #[test]
@@ -84,13 +84,16 @@ deadline = 0.5
 program = "no-such-program"
 "#;
     let station = Station::with(&["mock"], settings);
-    let mut running = station.start();
+    let (mut running, log) = station.start_logging();
     running.scan(SERIALS[0]);
     running.state("1", "PASS");
     for said in ["no paper", "was killed after 0.5 s", "cannot be started"] {
         let news = running.wait(said, |news| news["news"] == "hook");
         assert!(news["said"].as_str().unwrap().contains(said), "{news}");
+        // By then the next board may be in the lane.
+        assert_eq!(news["serial"], SERIALS[0], "{news}");
     }
+    logged(&log, 3, &format!("WARN lane 1, {}: the hook ", SERIALS[0]));
     let (code, heard) = running.end();
     assert_eq!(code, Some(0));
     let last = heard.iter().rfind(|news| news["news"] == "lane").unwrap();

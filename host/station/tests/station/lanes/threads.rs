@@ -30,6 +30,7 @@ fn hooks_that_no_thread_is_there_for_are_told_as_hooks_that_failed() {
     running.scan(SERIALS[2]);
     let news = running.wait("a hook that failed", |news| news["news"] == "hook");
     assert!(news["said"].as_str().unwrap().contains("no thread for it"), "{news}");
+    assert_eq!(news["serial"], SERIALS[2], "{news}");
     running.end();
     assert_eq!(station.query("SELECT count(*) FROM run WHERE verdict = 'PASS'"), ["3"]);
     assert_one_failed(&station);

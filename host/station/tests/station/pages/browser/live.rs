@@ -212,3 +212,16 @@ fn a_verdict_is_told_once() {
     assert_eq!(page.evaluate(&again("")), json!([true, 0, false]));
     assert_eq!(page.evaluate(&again("run: 'another'")), json!([true, 2, true]), "the control");
 }
+
+/// The hook is killed long after its verdict, and by then another board may be in the lane.
+#[test]
+fn a_hook_that_failed_is_told_with_its_unit() {
+    let more = "[web]\nlisten = \"127.0.0.1:0\"\n[[on-pass]]\nprogram = \"false\"";
+    let station = Station::with(1, more);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    page.wait("document.querySelector('.lane.ready') !== null");
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
+    let of_unit = format!("Lane 1, {}: the hook false failed", SERIALS[0]);
+    page.wait(&format!("document.getElementById('notice').textContent.startsWith('{of_unit}')"));
+}
