@@ -12,11 +12,21 @@ pub(super) const SCHEMAS: [&str; 7] = [
     include_str!("../../sql/schema-7.sql"),
 ];
 
-/// Words of a plant's statements about boards: whether a board is free, the last judgement of its unit by the plan of a job,
+/// Words of a plant's statements about boards: whether a board is free, whether the last run of its unit was no ERROR of the last
+/// ten minutes, when that run ended if it was an ERROR that nobody asked for, the last judgement of its unit by the plan of a job,
 /// whether somebody waits for it who reaches it, a waiter's station, and the time by the plant's clock, in milliseconds since 1970,
 /// UTC. Earlier ones use later ones.
-pub(super) const OF_BOARDS: [(&str, &str); 5] = [
+pub(super) const OF_BOARDS: [(&str, &str); 7] = [
     ("{free}", "(board.holder IS NULL OR board.until_ms < {now_ms})"),
+    ("{is_well}", "coalesce({erred_ms} < {now_ms} - 600000, TRUE)"),
+    (
+        "{erred_ms}",
+        "(SELECT CASE WHEN run.verdict = 'ERROR' AND run.cause <> 'operator' THEN run.ended_ms END
+           FROM run
+           WHERE run.unit_id = (SELECT id FROM unit WHERE unit.product = board.product AND unit.serial = board.serial)
+             AND run.nth > 0
+           ORDER BY run.started_ms DESC, run.id DESC LIMIT 1)",
+    ),
     (
         "{last_verdict}",
         "(SELECT run.verdict FROM run JOIN unit ON unit.id = run.unit_id

@@ -284,7 +284,7 @@ fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, Data
     to.execute(sql::EXHAUSTED_JOBS, &[])?;
     let [once, plans, has] = [once, plans, has].map(|words| words.join(" "));
     let id: Option<String> =
-        to.first(sql::CLAIMABLE_JOB, values![station, &once, &plans, &has], |row| row.get(0))?;
+        to.first(sql::CLAIMABLE_JOB, values![station, &plans, &once, &has], |row| row.get(0))?;
     let Some(id) = id else { return Ok(None) };
     let board: Option<String> =
         to.first(sql::BOARD_OF_JOB, values![&id, station, &once], |row| row.get(0))?;

@@ -10,6 +10,7 @@ mod rate;
 mod sent;
 mod shift;
 mod stuck;
+mod unwell;
 mod work;
 
 use std::path::{Path, PathBuf};
