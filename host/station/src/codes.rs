@@ -165,6 +165,7 @@ codes::codes! {
     WorkError {
         NoPlan [job, sha256] => "job-without-plan",
         Target [board, target] => "shared-board-without-place",
+        Serial [board, serial, plan] => "shared-board-of-no-serial",
         NotTaken [run, said] => "job-run-not-taken",
         = Run,
         = Again,

@@ -10,6 +10,7 @@ WITH fit AS MATERIALIZED (
         AND (job.plan_sha256 <> ALL (string_to_array($3, ' ')) OR {last_verdict} IS DISTINCT FROM 'PASS')
       )
     )
+    AND NOT $4::text::jsonb ? {pairing}
 )
 SELECT board.name FROM board
 JOIN fit ON fit.name = board.name

@@ -1,3 +1,3 @@
--- A job that was claimed and not begun is as it was.
-UPDATE job SET state = 'waiting', holder = NULL, until_ms = NULL, attempts = attempts - 1
-WHERE id = $1 AND holder = $2 AND fence = $3 AND state = 'claimed';
+-- A job that was claimed and not begun is as it was, but for what is to be said of it.
+UPDATE job SET state = 'waiting', holder = NULL, until_ms = NULL, attempts = attempts - 1, said = coalesce($1, said)
+WHERE id = $2 AND holder = $3 AND fence = $4 AND state = 'claimed';

@@ -162,6 +162,7 @@ fn worker(settings: &Settings) -> Result<Worker, Failure> {
         plans: plans().map(hashes).collect(),
         once: plans().filter(|plan| plan.again != Again::Allow).map(hashes).collect(),
         has: work.has.clone(),
+        unfit: Vec::new(),
     })
 }
 

@@ -13,10 +13,10 @@ pub(super) const SCHEMAS: [&str; 7] = [
 ];
 
 /// Words of a plant's statements about boards: whether a board is free, whether the last run of its unit was no ERROR of the last
-/// ten minutes, when that run ended if it was an ERROR that nobody asked for, the last judgement of its unit by the plan of a job,
-/// whether somebody waits for it who reaches it, a waiter's station, and the time by the plant's clock, in milliseconds since 1970,
-/// UTC. Earlier ones use later ones.
-pub(super) const OF_BOARDS: [(&str, &str); 7] = [
+/// ten minutes, when that run ended if it was an ERROR that nobody asked for, the [pairing](super::Claim::pairing) of a job's plan with it,
+/// the last judgement of its unit by that plan, whether somebody waits for it who reaches it, a waiter's station, and the time by the
+/// plant's clock, in milliseconds since 1970, UTC. Earlier ones use later ones.
+pub(super) const OF_BOARDS: [(&str, &str); 8] = [
     ("{free}", "(board.holder IS NULL OR board.until_ms < {now_ms})"),
     ("{is_well}", "coalesce({erred_ms} < {now_ms} - 600000, TRUE)"),
     (
@@ -27,6 +27,7 @@ pub(super) const OF_BOARDS: [(&str, &str); 7] = [
              AND run.nth > 0
            ORDER BY run.started_ms DESC, run.id DESC LIMIT 1)",
     ),
+    ("{pairing}", "concat_ws(' ', job.plan_sha256, board.target, board.serial)"),
     (
         "{last_verdict}",
         "(SELECT run.verdict FROM run JOIN unit ON unit.id = run.unit_id

@@ -1,41 +1,59 @@
-//! Plans of which a file is another one than at the start: their jobs are left to stations that have the plan as it was.
+//! What a station takes no jobs of: plans of which a file is another one than at the start, whose jobs are left to stations that have
+//! the plan as it was, and shared boards that cannot be judged as they are shared.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::plan::Plan;
 use crate::said::Saying;
+use crate::store::{Claim, Worker};
 
 /// How long no job of such a plan is taken before its files are looked at again.
 const AGAIN: Duration = Duration::from_secs(5);
 
-/// For each plan that was set aside, by its hash, until when.
+/// What was set aside.
 #[derive(Debug, Default)]
-pub struct Aside(Mutex<BTreeMap<String, Instant>>);
+pub struct Aside {
+    /// Until when, for each plan, by its hash.
+    plans: Mutex<BTreeMap<String, Instant>>,
+    /// [Pairings](Claim::pairing) of a plan with a board.
+    boards: Mutex<BTreeSet<String>>,
+}
 
 impl Aside {
-    /// Whether jobs of the plan with this hash are taken.
-    pub(super) fn lets(&self, sha256: &str) -> bool {
-        self.plans().get(sha256).is_none_or(|until| *until <= Instant::now())
+    /// `worker`, without what is set aside.
+    pub(super) fn without(&self, worker: &Worker) -> Worker {
+        let plans = locked(&self.plans);
+        let lets = |sha256: &&String| plans.get(*sha256).is_none_or(|until| *until <= Instant::now());
+        Worker {
+            plans: worker.plans.iter().filter(lets).cloned().collect(),
+            unfit: locked(&self.boards).iter().cloned().collect(),
+            ..worker.clone()
+        }
     }
 
     /// Takes note of a run that was not begun because a file of `plan` was changed: the plan is set aside. The log says that once.
     pub(super) fn put(&self, Plan { sha256, product, name, version, .. }: &Plan, why: &Saying) {
         let until = Instant::now() + AGAIN;
-        if self.plans().insert(sha256.clone(), until).is_none() {
+        if locked(&self.plans).insert(sha256.clone(), until).is_none() {
             tracing::warn!("no job of the plan {product}/{name} {version} is taken for now: {why}");
         }
     }
 
     /// Takes note of a run by `plan`. If it was set aside, the log says that it is not any more.
     pub(super) fn take_back(&self, Plan { sha256, product, name, version, .. }: &Plan) {
-        if self.plans().remove(sha256).is_some() {
+        if locked(&self.plans).remove(sha256).is_some() {
             tracing::warn!("jobs of the plan {product}/{name} {version} are taken again");
         }
     }
 
-    fn plans(&self) -> MutexGuard<'_, BTreeMap<String, Instant>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Sets the board of `claim` aside for jobs by its plan, until it is shared differently.
+    pub(super) fn put_board(&self, claim: &Claim) {
+        locked(&self.boards).insert(claim.pairing());
     }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

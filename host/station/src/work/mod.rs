@@ -7,20 +7,23 @@
 //! ```
 
 mod aside;
+mod error;
 mod held;
 
 use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use halfrow::target::{Target, TargetError};
+use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 use rand::{RngExt as _, rng};
 
 pub use aside::Aside;
+pub use error::WorkError;
 pub use held::{Held, Holding, Lost};
 
 use crate::clock;
+use crate::history::PlanName;
 use crate::labgrid::LaneBoard;
 use crate::outbox::{Sent, awaited};
 use crate::plan::Plan;
@@ -28,9 +31,7 @@ use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{
-    AgainError, Claim, InLane, Introduction, PlantError, PlantLink, SharedStore, StoreError, Worker,
-};
+use crate::store::{Claim, InLane, Introduction, PlantError, PlantLink, SharedStore, StoreError, Worker};
 
 /// The operator in records and in the plant's audit.
 const OPERATOR: &str = "job";
@@ -42,68 +43,6 @@ const AWAY_MS: u64 = 5_000;
 const TRIES_OUT: u32 = 40;
 /// The time between two checks whether a wait is over.
 const LOOK: Duration = Duration::from_millis(50);
-
-/// A job that came to no run.
-#[derive(Debug, thiserror::Error)]
-pub enum WorkError {
-    /// The run has no verdict.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// The unit passed already, and the plan does not let it be judged again.
-    #[error(transparent)]
-    Again(#[from] AgainError),
-    /// The station lacks the plan of a job, although it said that it has it.
-    #[error("this station does not have the plan {sha256} of the job {job}; report this with the version")]
-    NoPlan {
-        /// The job.
-        job: String,
-        /// The plan's hash.
-        sha256: String,
-    },
-    /// The board's place at the plant is not a target that this program can open.
-    #[error("the plant says that the board {board} is at {target}, which is no board; share it anew")]
-    Target {
-        /// The board.
-        board: String,
-        /// Where it is said to be.
-        target: String,
-        /// Why that is none.
-        source: TargetError,
-    },
-    /// The plant was reached, but refused the run of a job.
-    #[error(
-        "the plant does not take the run {run}, which is kept here: {said}; `halfrow-station outbox list` shows its \
-         state"
-    )]
-    NotTaken {
-        /// The run.
-        run: String,
-        /// What it said.
-        said: String,
-    },
-}
-
-impl WorkError {
-    /// Whether the board was not touched, for a reason that lies with the station and not with the job.
-    const fn is_not_begun(&self) -> bool {
-        matches!(self, Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_) | RunError::PlanFile(_)))
-    }
-
-    /// Whether a file of the job's plan was changed. The log has said so, and jobs of other plans may get further.
-    pub(crate) const fn is_of_plan(&self) -> bool {
-        matches!(self, Self::Run(RunError::PlanFile(_)))
-    }
-
-    /// Whether the station's own store fails, or the plant where it had to be asked first, so that another job would get no
-    /// further.
-    #[must_use]
-    pub(crate) const fn is_of_store(&self) -> bool {
-        matches!(
-            self,
-            Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_) | RunError::Unsaved { .. })
-        )
-    }
-}
 
 /// The result of a job.
 #[derive(Debug)]
@@ -133,7 +72,7 @@ pub struct Work<'a> {
     pub program: PathBuf,
     /// Its identity at the plant.
     pub worker: Worker,
-    /// Those of its plans whose jobs it does not take for now.
+    /// What it takes no jobs of.
     pub aside: Aside,
 }
 
@@ -143,8 +82,7 @@ impl Work<'_> {
     /// # Errors
     /// [`StoreError`] when the plant is not there.
     pub fn claim(&self) -> Result<Option<Claim>, StoreError> {
-        let mut worker = self.worker.clone();
-        worker.plans.retain(|sha256| self.aside.lets(sha256));
+        let worker = self.aside.without(&self.worker);
         self.plant.ask(|plant| plant.claim(&worker))
     }
 
@@ -170,8 +108,7 @@ impl Work<'_> {
 
     /// Gives back a job that was not begun. This costs the job no attempt.
     pub fn decline(&self, claim: &Claim) {
-        let back = self.plant.ask(|plant| plant.decline(claim));
-        free_later(&claim.job, back);
+        free_later(&claim.job, self.plant.ask(|plant| plant.decline(claim, None)));
     }
 
     /// Judges the board of a claim, keeps the result, and waits until the plant has it or does not take it, or the claim is lost.
@@ -206,14 +143,19 @@ impl Work<'_> {
         Ok(JobResult { claim, is_sent, refused, counts, saved })
     }
 
-    /// Gives back a job that came to no run. One whose unit must not be judged ends here.
+    /// Gives back a job that came to no run. One whose unit must not be judged ends here; one whose board cannot be judged goes to
+    /// another board.
     fn give_back(&self, claim: &Claim, error: &WorkError) {
         if error.is_not_begun() {
             return self.decline(claim);
         }
+        if error.is_of_board() {
+            self.aside.put_board(claim);
+        }
         let said = Said::of(error).to_string();
         let back = self.plant.ask(|plant| match error {
             WorkError::Again(_) => plant.refuse(claim, &said),
+            _ if error.is_of_board() => plant.decline(claim, Some(&said)),
             _ => plant.fail(claim, &said),
         });
         free_later(&claim.job, back);
@@ -267,7 +209,7 @@ impl Work<'_> {
         let Some(PlanFile { path, plan }) = file else {
             return Err(WorkError::NoPlan { job: claim.job.clone(), sha256: claim.plan_sha256.clone() });
         };
-        self.refuse_passed(claim, plan)?;
+        self.refuse_unit(claim, plan)?;
         let (station, lane) = (&self.worker.station, &claim.lease.board);
         let counts = self.store.with(|store| {
             store.folder().counts(&InLane::of(station, lane, plan), claim.serial(), clock::now_ms())
@@ -295,9 +237,13 @@ impl Work<'_> {
         Ok(ended?)
     }
 
-    /// Refuses a unit that passed if the plan does. The plant knows it, because a job is done and its board free only once its run is
-    /// there.
-    fn refuse_passed(&self, claim: &Claim, plan: &Plan) -> Result<(), WorkError> {
+    /// Refuses a unit that the plan does not judge, or that passed if the plan refuses such a one. The plant knows it, because a job is
+    /// done and its board free only once its run is there.
+    fn refuse_unit(&self, claim: &Claim, plan: &Plan) -> Result<(), WorkError> {
+        if plan.select(claim.serial()).is_err() {
+            let (board, serial) = (claim.lease.board.clone(), claim.serial().to_owned());
+            return Err(WorkError::Serial { board, serial, plan: PlanName::from(plan).to_string() });
+        }
         let refused = self.plant.ask(|plant| plant.refuses(plan, claim.serial()));
         match refused.map_err(|error| RunError::NotBegun(Box::new(error)))? {
             Some(error) => Err(error.into()),

@@ -130,6 +130,8 @@ pub struct Worker {
     pub once: Vec<String>,
     /// What it has that jobs may need.
     pub has: Vec<String>,
+    /// The [pairings](Claim::pairing) that it cannot judge.
+    pub unfit: Vec<String>,
 }
 
 /// A job that a worker has, with its board.
@@ -150,6 +152,11 @@ impl Claim {
     #[must_use]
     pub fn serial(&self) -> &str {
         &self.lease.serial
+    }
+
+    /// The plan with the board, as it is shared.
+    pub(crate) fn pairing(&self) -> String {
+        format!("{} {} {}", self.plan_sha256, self.lease.target, self.lease.serial)
     }
 }
 
@@ -221,14 +228,14 @@ impl Plant {
         Ok(renewed == 1 && self.renew(lease)?)
     }
 
-    /// Gives back a job that was not begun, and its board.
+    /// Gives back a job that was not begun, and its board; `said` is why, where that is of interest to whoever looks at the job.
     ///
     /// # Errors
     /// Like [`Self::add_jobs`].
-    pub fn decline(&mut self, claim: &Claim) -> Result<(), StoreError> {
+    pub fn decline(&mut self, claim: &Claim, said: Option<&str>) -> Result<(), StoreError> {
         let Claim { job, fence, lease, .. } = claim;
         self.carry_out("to take a job back", |to| {
-            to.execute(sql::RETURN_JOB, values![job, &lease.holder, *fence])
+            to.execute(sql::RETURN_JOB, values![said, job, &lease.holder, *fence])
         })?;
         self.give_back(lease)
     }
@@ -280,14 +287,15 @@ impl Plant {
 
 /// Claims a job and its board, or neither: the rows are locked until the transaction ends.
 fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, DatabaseError> {
-    let Worker { holder, station, plans, once, has } = worker;
+    let Worker { holder, station, plans, once, has, unfit } = worker;
     to.execute(sql::EXHAUSTED_JOBS, &[])?;
     let [once, plans, has] = [once, plans, has].map(|words| words.join(" "));
+    let unfit = serde_json::to_string(unfit)?;
     let id: Option<String> =
-        to.first(sql::CLAIMABLE_JOB, values![station, &plans, &once, &has], |row| row.get(0))?;
+        to.first(sql::CLAIMABLE_JOB, values![station, &once, &plans, &unfit, &has], |row| row.get(0))?;
     let Some(id) = id else { return Ok(None) };
     let board: Option<String> =
-        to.first(sql::BOARD_OF_JOB, values![&id, station, &once], |row| row.get(0))?;
+        to.first(sql::BOARD_OF_JOB, values![&id, station, &once, &unfit], |row| row.get(0))?;
     // Somebody else was quicker.
     let Some(board) = board else { return Ok(None) };
     let lease = hold(to, &board, holder)?;

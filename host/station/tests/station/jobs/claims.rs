@@ -154,7 +154,7 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     assert!(!plant.retry_job(&id, "engel", "twice").unwrap());
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
     // A job that was not begun costs no attempt.
-    plant.decline(&claim).unwrap();
+    plant.decline(&claim, None).unwrap();
     assert_eq!(states(&server), [["waiting", "0"]]);
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
     plant.take(&run_of(&claim, 9, End::Fail(&["clock"]))).unwrap();

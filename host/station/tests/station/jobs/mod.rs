@@ -78,7 +78,14 @@ pub(crate) fn job<'a>(plan: &'a Plan, wanted: &'a Wanted) -> NewJob<'a> {
 /// A worker of this station, which only has the plan.
 pub(crate) fn worker(station: &str) -> Worker {
     let [holder, station] = [format!("{station} 1"), station.to_owned()];
-    Worker { holder, station, plans: vec![plan().sha256], once: Vec::new(), has: Vec::new() }
+    Worker {
+        holder,
+        station,
+        plans: vec![plan().sha256],
+        once: Vec::new(),
+        has: Vec::new(),
+        unfit: Vec::new(),
+    }
 }
 
 /// Lets all leases run out, as if their holders had been silent for long.

@@ -1,5 +1,6 @@
 //! Shared boards that cannot be judged where they are said to be, beside good ones of their kind.
 
+use std::path::Path;
 use std::process::Command;
 
 use halfrow_station::store::{Claim, Plant, SharedBoard, Wanted};
@@ -16,10 +17,9 @@ fn with_one_unreachable() -> (Server, Plant) {
     (server, plant)
 }
 
-/// Has a station take all jobs that it can judge.
-fn worked(server: &Server) -> Did {
-    let folder = folder();
-    let path = settings(server, folder.path(), "12");
+/// Has the station in `folder` take all jobs that it can judge.
+fn worked(server: &Server, folder: &Path) -> Did {
+    let path = settings(server, folder, "12");
     let did =
         Did::from(Command::new(program()).args(["work", "--once", "--settings"]).arg(path).output().unwrap());
     assert_eq!(did.code, Some(0), "{did:?}");
@@ -38,7 +38,7 @@ fn an_unreachable_board_ends_no_job_that_another_board_of_the_kind_can_do() {
     let (plan, any) = (plan(), any());
     plant.add_jobs(&job(&plan, &any), 6).unwrap();
     plant.add_jobs(&job(&plan, &Wanted::Serial("CAT00000".to_owned())), 1).unwrap();
-    worked(&server);
+    worked(&server, folder().path());
     let first = ["done", "2"];
     let other = ["done", "1"];
     // Whoever means the unreachable board itself gets no other.
@@ -52,7 +52,7 @@ fn a_board_that_ended_in_an_error_is_tried_again_when_no_other_would_do_or_after
     let (server, mut plant) = with_one_unreachable();
     let (plan, any) = (plan(), any());
     plant.add_jobs(&job(&plan, &any), 1).unwrap();
-    worked(&server);
+    worked(&server, folder().path());
     plant.add_jobs(&job(&plan, &any), 2).unwrap();
     let mut claim = || plant.claim(&worker("12")).unwrap();
     let board = |claim: Option<&Claim>| claim.map(|claim| claim.lease.board.clone());
@@ -77,4 +77,37 @@ fn a_board_that_ended_in_an_error_is_tried_again_when_no_other_would_do_or_after
     ended(0);
     change("UPDATE board SET out = 'lent' WHERE name = 'shelf-1'");
     assert_eq!(board(claim().as_ref()).as_deref(), Some("shelf-0"), "there is no other");
+}
+
+/// It could be judged by no number of claims, and its label is on another board.
+#[test]
+fn a_board_that_cannot_be_judged_as_it_is_shared_costs_no_attempt_and_is_named() {
+    let named = "shelf-0 is shared under the serial number `S0078`, which is none of the plan CAM-T/quick; share it under";
+    let wrong = [
+        (SharedBoard { serial: "S0078".to_owned(), ..board(0, "mock") }, named),
+        (
+            SharedBoard { target: "mock,fault".to_owned(), ..board(0, "mock") },
+            "shelf-0 is at mock,fault, which is no board",
+        ),
+    ];
+    for (wrong, said) in wrong {
+        let (server, mut plant) = shared(1);
+        let folder = folder();
+        assert!(plant.share(&wrong, "engel").unwrap());
+        let (plan, any) = (plan(), any());
+        plant.add_jobs(&job(&plan, &any), 2).unwrap();
+        let did = worked(&server, folder.path());
+        assert_eq!(did.complained.matches(said).count(), 1, "{did:?}");
+        assert_eq!(states(&server), [["waiting", "0"], ["waiting", "0"]]);
+        assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
+        let told = server.rows("SELECT said FROM job ORDER BY id LIMIT 1").concat().concat();
+        assert!(told.contains(said), "{told}");
+        assert!(plant.share(&board(1, "mock"), "engel").unwrap());
+        worked(&server, folder.path());
+        assert_eq!(states(&server), [["done", "1"], ["done", "1"]]);
+        assert!(plant.share(&board(0, "mock"), "engel").unwrap());
+        plant.add_jobs(&job(&plan, &any), 1).unwrap();
+        worked(&server, folder.path());
+        assert_eq!(server.rows("SELECT lane FROM run ORDER BY id DESC LIMIT 1"), [["shelf-0"]]);
+    }
 }
