@@ -222,6 +222,7 @@ codes::codes! {
     }
     SecretError {
         File [path] => "secret-file-unusable",
+        Folder [path] => "secret-file-is-folder",
         Open [path] => "secret-file-open",
         GivenOpen [path] => "given-secret-open",
         Empty [path] => "given-secret-empty",

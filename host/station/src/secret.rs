@@ -23,6 +23,12 @@ pub enum SecretError {
         /// The system's reason.
         source: io::Error,
     },
+    /// The file that should hold a secret is a folder.
+    #[error("{} is a folder, and no file with a secret; name that file", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+    },
     /// Other users may read a file of secrets that the station itself wrote.
     #[error("others may read {0}, which has secrets; run: chmod 600 {0}", path.display())]
     Open {
@@ -73,21 +79,27 @@ pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
 
 /// The text of a file that the station writes itself, and that nobody else may read.
 pub(crate) fn own(path: &Path) -> Result<String, SecretError> {
-    let refused = |source| SecretError::File { path: path.to_owned(), source };
-    if is_open(fs::metadata(path).map_err(refused)?.mode()) {
+    if is_open(about(path)?.mode()) {
         return Err(SecretError::Open { path: path.to_owned() });
     }
-    fs::read_to_string(path).map_err(refused)
+    fs::read_to_string(path).map_err(|source| SecretError::File { path: path.to_owned(), source })
+}
+
+/// What the system says of a file of secrets.
+fn about(path: &Path) -> Result<Metadata, SecretError> {
+    match fs::metadata(path) {
+        Ok(about) if about.is_dir() => Err(SecretError::Folder { path: path.to_owned() }),
+        about => about.map_err(|source| SecretError::File { path: path.to_owned(), source }),
+    }
 }
 
 /// The text of a file that the station is given, such as a token. Only the station may read it, and root, who may own it.
 pub(crate) fn text(path: &Path) -> Result<String, SecretError> {
-    let refused = |source| SecretError::File { path: path.to_owned(), source };
-    let about = Rights::of(&fs::metadata(path).map_err(refused)?);
-    if !about.is_closed(geteuid().as_raw(), getegid().as_raw()) {
+    if !Rights::of(&about(path)?).is_closed(geteuid().as_raw(), getegid().as_raw()) {
         return Err(SecretError::GivenOpen { path: path.to_owned() });
     }
-    let text = read_text(path, MAX_BYTES).map_err(refused)?;
+    let text =
+        read_text(path, MAX_BYTES).map_err(|source| SecretError::File { path: path.to_owned(), source })?;
     if text.trim().is_empty() { Err(SecretError::Empty { path: path.to_owned() }) } else { Ok(text) }
 }
 

@@ -364,6 +364,11 @@ fn what_is_no_plan_of_its_own_folder_or_no_key_is_refused() {
     made.plan("1", 1);
     let no_key = made.publish("plan.toml");
     assert!(no_key.code == Some(2) && no_key.complained.contains("chmod 600"), "{no_key:?}");
+    let folder = made.publish("frames");
+    assert!(
+        folder.code == Some(2) && folder.complained.contains("frames is a folder, and no file"),
+        "{folder:?}"
+    );
     let again = made.did(&["plan", "key", &made.path("engel.key")]);
     assert!(again.code == Some(2) && again.complained.contains("not there yet"), "{again:?}");
     let settings = fs::read_to_string(made.path("station.toml")).unwrap();
