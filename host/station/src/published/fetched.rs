@@ -34,7 +34,7 @@ pub enum FetchError {
     /// The plan at the plant is older than the one that is kept here.
     #[error(
         "the plant has the plan {plan} as its number {number}, and here is number {kept} already; nothing was changed: ask whoever keeps \
-         the plant, and publish the older one again if it is to hold"
+         the plant and, if its plan is to hold, publish it again until its number is above {kept}"
     )]
     Older {
         /// Its product and name.

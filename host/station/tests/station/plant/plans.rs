@@ -229,6 +229,25 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
     assert_eq!(made.held(), ("3".to_owned(), 3));
 }
 
+/// A plant that is put back has lost statements, and gives their numbers again.
+#[test]
+fn a_plan_holds_again_once_it_was_published_as_often_as_numbers_are_missing() {
+    let made = Published::new();
+    for version in ["1", "2", "3"] {
+        made.plan(version, 1);
+        made.publish("engel.key");
+    }
+    made.fetch();
+    made.server.client("plant").batch_execute("DELETE FROM publication WHERE number > 1").unwrap();
+    made.plan("1", 1);
+    for number in 2..=4 {
+        let refused = made.fetch();
+        assert!(refused.complained.contains("publish it again until its number is above 3"), "{refused:?}");
+        assert_eq!(made.publish("engel.key").said, format!("CAM-T/quick 1 holds, as number {number}\n"));
+    }
+    assert_eq!(made.fetch().said, format!("CAM-T/quick 1, number 4, {IS_NEW}\n"));
+}
+
 /// As after the plant was put back, so that its number was given to another plan.
 #[test]
 fn another_plan_under_the_number_that_a_station_has_is_not_taken() {
