@@ -36,6 +36,7 @@ codes::codes! {
     InputError {
         Unreadable [path] => "station-input-unreadable",
         NotText [path] => "station-input-no-text",
+        Path [path] => "station-input-path-no-text",
         Wrong [path, line, what] => "station-input-wrong",
         Input [path, line, what] => "station-input-names-unusable",
     }
@@ -83,6 +84,7 @@ codes::codes! {
     StoreError {
         InUse [folder] => "store-in-use",
         Folder [folder] => "store-folder-unusable",
+        Path [folder] => "store-path-no-text",
         NoResults [folder] => "store-without-results",
         DatabaseGone [folder] => "store-without-database",
         Unrestored [folder] => "store-restore-unfinished",

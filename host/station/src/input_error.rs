@@ -25,6 +25,12 @@ pub enum InputError {
         /// Why it is not text.
         source: io::Error,
     },
+    /// The file's path is not UTF-8. Lanes are told it in JSON.
+    #[error("the path {} is not UTF-8, and no lane could be told it; rename what is not, or move the file", path.display())]
+    Path {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file has a line that is wrong; the message names the line and ends in what to do.
     #[error("{}:{line}: {what}; {remedy}", path.display())]
     Wrong {

@@ -186,7 +186,7 @@ impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         let exit = match error {
             StoreError::InUse { .. } => Exit::Busy,
-            StoreError::NoResults { .. } => Exit::Usage,
+            StoreError::NoResults { .. } | StoreError::Path { .. } => Exit::Usage,
             _ => Exit::Error,
         };
         Self { exit, error: error.into() }

@@ -120,6 +120,7 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
 fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Result<Copied, CopyError> {
     let refused = |source| CopyError::Io { path: to.to_owned(), source };
     let to = std::path::absolute(to).map_err(refused)?;
+    Folder::new(&to).refuse_path()?;
     let exists = || CopyError::Exists { path: to.clone() };
     let (Some(parent), Some(name)) = (to.parent(), to.file_name()) else { return Err(exists()) };
     let is_there = to.is_dir();

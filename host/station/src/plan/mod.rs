@@ -177,6 +177,9 @@ impl Plan {
     /// # Errors
     /// [`InputError`], with the line.
     pub fn load(path: &Path) -> Result<Self, InputError> {
+        if path.to_str().is_none() {
+            return Err(InputError::Path { path: path.to_owned() });
+        }
         Self::parse(path, text_of(path)?)
     }
 

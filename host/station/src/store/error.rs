@@ -25,6 +25,12 @@ pub enum StoreError {
         /// The system's reason.
         source: io::Error,
     },
+    /// The folder's path is not UTF-8. Lanes are told it in JSON, and SQLite copies a database only to a file of such a name.
+    #[error("the path {} is not UTF-8, and no station works in such a folder; rename what is not, or name another folder", folder.display())]
+    Path {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// No station has ever written to the folder.
     #[error("{} has no station's results; name the folder that a station writes to", folder.display())]
     NoResults {

@@ -45,6 +45,11 @@ impl Folder {
         self.0.join("station.db")
     }
 
+    /// Refuses a folder whose path is not UTF-8.
+    pub(crate) fn refuse_path(&self) -> Result<(), StoreError> {
+        if self.0.to_str().is_none() { Err(StoreError::Path { folder: self.0.clone() }) } else { Ok(()) }
+    }
+
     /// Refuses a folder in which a restore is at work, or was when its program was killed: what begins there would be in its way.
     pub(super) fn refuse_unfinished_restore(&self) -> Result<(), StoreError> {
         let is_unfinished = self.0.join(ASIDE).exists() && !self.database().exists();

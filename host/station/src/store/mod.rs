@@ -130,6 +130,7 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when another program has it, or it cannot be made, read or written.
     pub fn open(folder: &Folder) -> Result<Self, StoreError> {
+        folder.refuse_path()?;
         folder.refuse_unfinished_restore()?;
         for place in ["blobs", "spool"] {
             // Whatever the umask, nobody else may put another database there.

@@ -45,6 +45,32 @@ fn help_that_stdout_does_not_take_is_an_error() {
     }
 }
 
+/// Every board would be an ERROR, and nobody would know of what.
+#[test]
+fn a_plan_or_a_folder_whose_path_is_no_text_is_refused_before_anything_is_judged() {
+    let station = Station::with(PLAN);
+    let folder = station.path("").join(OsStr::from_bytes(b"m\xf6bel"));
+    fs::create_dir(&folder).unwrap();
+    fs::copy(station.path("plan.toml"), folder.join("plan.toml")).unwrap();
+    let refused = |arguments: &[&OsStr]| {
+        let did: Did = Command::new(program()).args(arguments).output().unwrap().into();
+        let is_named = did.complained.contains("bel") && did.complained.contains("is not UTF-8");
+        assert!(did.code == Some(2) && is_named, "{did:?}");
+    };
+    let arguments = station.run_arguments("CAT00001", "mock");
+    for path in ["plan.toml", "data"] {
+        let (was, is) = (station.path(path), folder.join(path));
+        let instead = |word| if was.as_os_str() == word { is.as_os_str() } else { word };
+        let arguments: Vec<_> = arguments.iter().map(|word| instead(OsStr::new(word))).collect();
+        refused(&arguments);
+        assert!(!station.data().exists(), "nothing was begun");
+    }
+    let did = station.run("CAT00001", "mock");
+    assert_eq!(did.code, Some(0), "{did:?}");
+    let (data, copy) = (station.data(), folder.join("copy"));
+    refused(&[OsStr::new("backup"), copy.as_os_str(), OsStr::new("--data"), data.as_os_str()]);
+}
+
 /// A lane that reads its own path as text would panic.
 #[test]
 fn a_program_whose_folder_is_no_text_judges_boards() {
