@@ -10,10 +10,11 @@ use super::looking::{either, table, time};
 use super::plant::plant;
 use super::why::{Why, at_plant, name, person};
 use super::{Failure, print};
+use crate::console;
 use crate::exit::Exit;
 use crate::plan::Plan;
 use crate::settings::is_word;
-use crate::store::{Job, JobState, NewJob, PlantAddress, PlantPool, Wanted, jobs};
+use crate::store::{Job, JobState, NewJob, PlantAddress, PlantPool, SharedBoard, Wanted, boards, jobs};
 
 /// How many jobs are listed unless the command says otherwise.
 const LISTED: u32 = 100;
@@ -56,12 +57,8 @@ struct Add {
     /// The plan; a station takes the job that has just this one
     #[arg(long, value_name = "FILE")]
     plan: PathBuf,
-    /// The board that is this unit
-    #[arg(long, required_unless_present = "kind", conflicts_with = "kind")]
-    serial: Option<String>,
-    /// Any board of this kind
-    #[arg(long, value_parser = name)]
-    kind: Option<String>,
+    #[command(flatten)]
+    about: About,
     /// What a station must have, as its settings name it; may be given several times
     #[arg(long, value_name = "WORD")]
     needs: Vec<String>,
@@ -74,6 +71,18 @@ struct Add {
     /// Your name, which the audit keeps
     #[arg(long, value_name = "NAME", value_parser = person)]
     operator: String,
+}
+
+/// Which board a job is about.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct About {
+    /// The board that is this unit
+    #[arg(long)]
+    serial: Option<String>,
+    /// Any board of this kind
+    #[arg(long, value_parser = name)]
+    kind: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -127,7 +136,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 
 fn add_jobs(address: &PlantAddress, add: &Add) -> Result<Exit, Failure> {
     let plan = Plan::load(&add.plan).map_err(Failure::call)?;
-    let wanted = match (&add.serial, &add.kind) {
+    let wanted = match (&add.about.serial, &add.about.kind) {
         (Some(serial), _) => {
             plan.select(serial).map_err(Failure::call)?;
             Wanted::Serial(serial.clone())
@@ -145,8 +154,27 @@ fn add_jobs(address: &PlantAddress, add: &Add) -> Result<Exit, Failure> {
         priority: add.priority,
         operator: &add.operator,
     };
+    if let Wanted::Kind(kind) = &wanted {
+        warn_of_no_board(address, kind, &plan.product)?;
+    }
     let mut plant = at_plant(address, &add.operator, &format!("job add {of}"))?;
-    print(&plant.add_jobs(&job, add.count)?.join("\n"))
+    let printed = print(&plant.add_jobs(&job, add.count)?.join("\n"));
+    if printed.is_err() {
+        console::diagnose(&"the jobs were added all the same; `halfrow-station job list` shows them");
+    }
+    printed
+}
+
+/// Warns of jobs for boards of a kind of which no unit of the product is shared.
+fn warn_of_no_board(address: &PlantAddress, kind: &str, product: &str) -> Result<(), Failure> {
+    let would_do = |board: &SharedBoard| board.kind == kind && board.product == product;
+    if !PlantPool::new(address.clone()).look(boards)?.iter().any(would_do) {
+        console::diagnose(&format_args!(
+            "warning: no board of the kind {kind} is shared as a unit of {product}; jobs for one wait until one is: \
+             `halfrow-station board list` shows what is shared"
+        ));
+    }
+    Ok(())
 }
 
 fn changed(is_changed: bool, id: &str, done: &'static str) -> Result<Exit, Failure> {

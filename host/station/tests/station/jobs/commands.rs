@@ -1,6 +1,6 @@
 //! Jobs and shared boards by the commands of a station's program, and a station that takes no jobs.
 
-use std::fs;
+use std::fs::{self, File};
 use std::process::Command;
 
 use serde_json::Value;
@@ -63,6 +63,7 @@ fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
     for wrong in wrong {
         assert_eq!(add(wrong).code, Some(2), "{wrong:?}");
     }
+    assert!(add(&[]).complained.contains("<--serial <SERIAL>|--kind <KIND>>"), "{:?}", add(&[]));
     let cancel = ["job", "cancel", &ids[0], "--reason", "a mistake", "--operator", "engel"];
     assert_eq!(engineer.did(&cancel).code, Some(0));
     assert_eq!(engineer.did(&cancel).code, Some(2));
@@ -78,6 +79,29 @@ fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
     assert_eq!(engineer.acts(), ["add job", "cancel job", "retry job"]);
     let [cancel, retry] = ["cancel", "retry"].map(|act| format!("job {act} {}", ids[0]));
     assert_eq!(engineer.commands(), ["job add mock", &cancel, &cancel, &retry], "also what came to nothing");
+}
+
+#[test]
+fn whoever_adds_a_job_that_no_board_could_do_or_whose_id_is_not_printed_is_told() {
+    let engineer = Engineer::new();
+    let plan = engineer.folder.path().join("plan.toml").display().to_string();
+    let add = ["job", "add", "--operator", "engel", "--plan", &plan, "--kind", "mock"];
+    let told = "no board of the kind mock is shared as a unit of CAM-T";
+    let did = engineer.did(&add);
+    assert!(did.code == Some(0) && did.complained.contains(told), "{did:?}");
+    let share = ["board", "share", "a", "--operator", "engel", "--kind", "mock", "--board", "mock"];
+    for (more, is_told) in [(&[] as &[&str], true), (&["--product", "CAM-T", "--serial", "CAT00001"], false)]
+    {
+        assert_eq!(engineer.did(&[&share[..], more].concat()).code, Some(0));
+        let did = engineer.did(&add);
+        assert_eq!((did.code, did.complained.contains(told)), (Some(0), is_told), "{did:?}");
+    }
+    let mut command = Command::new(program());
+    command.args(add).arg("--settings").arg(engineer.folder.path().join("station.toml"));
+    let full = File::options().write(true).open("/dev/full").unwrap();
+    let did = Did::from(command.stdout(full).output().unwrap());
+    assert!(did.code == Some(3) && did.complained.contains("the jobs were added all the same"), "{did:?}");
+    assert_eq!(engineer.server.rows("SELECT count(*) FROM job"), [["4"]]);
 }
 
 #[test]
