@@ -7,7 +7,6 @@ use halfrow::result::codes::{self, CodeList, Coded};
 use halfrow_program::codes as program;
 use serde_json::Value;
 
-use crate::check::{Fault, Superseded};
 use crate::commands::refusals;
 use crate::disk::DiskError;
 use crate::engine::HookError;
@@ -252,22 +251,6 @@ codes::codes! {
         OtherSchema [schema] => "record-of-other-schema",
         Json => "record-unreadable",
     }
-    Fault {
-        Database [said] => "database-damaged",
-        Evidence [run] => "run-evidence-wrong",
-        Record [run] => "run-record-wrong",
-        Contradiction [run] => "run-contradicts",
-        Unkept [run, sha256] => "run-record-not-kept",
-        Unnamed [run, sha256] => "run-without-row",
-        Foreign [path] => "kept-plans-foreign",
-        Job [job] => "job-without-run",
-        Audit [id] => "audit-contradicts",
-        Waiver [run] => "waiver-contradicts",
-        Plan [run] => "run-plan-wrong",
-        Differs [table, key, column, stored, rebuilt] => "table-row-differs",
-        Missing [table, key] => "table-row-missing",
-        Surplus [table, key] => "table-row-surplus",
-    }
     ReasonError {
         Missing => "reason-missing",
         TooLong [characters, most] => "reason-too-long",
@@ -370,8 +353,6 @@ codes::codes! {
     }
     ;
     UnknownBarcode [text] => "barcode-unknown"
-    ;
-    Superseded [run, row, sha256, verdict] => "run-record-superseded"
     ;
     NoRandomness => "no-randomness"
 }

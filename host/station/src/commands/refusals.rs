@@ -1,4 +1,4 @@
-//! The codes of what commands refuse, whatever the cause.
+//! The codes of what commands refuse, whatever the cause, and of what checks find.
 
 use halfrow::result::codes;
 
@@ -16,6 +16,7 @@ use super::token::NoTokens;
 use super::unit::NoSuchUnit;
 use super::user::NoUsers;
 use super::work::NoWork;
+use crate::check::{Fault, Superseded};
 
 codes::codes! {
     PublishError {
@@ -30,6 +31,24 @@ codes::codes! {
         Moves [what] => "shared-board-place-moves",
         Local [board] => "shared-board-at-every-station",
     }
+    Fault {
+        Database [said] => "database-damaged",
+        Evidence [run] => "run-evidence-wrong",
+        Record [run] => "run-record-wrong",
+        Contradiction [run] => "run-contradicts",
+        Unkept [run, sha256] => "run-record-not-kept",
+        Unnamed [run, sha256] => "run-without-row",
+        Foreign [path] => "kept-plans-foreign",
+        Job [job] => "job-without-run",
+        Audit [id] => "audit-contradicts",
+        Waiver [run] => "waiver-contradicts",
+        Plan [run] => "run-plan-wrong",
+        Differs [table, key, column, stored, rebuilt] => "table-row-differs",
+        Missing [table, key] => "table-row-missing",
+        Surplus [table, key] => "table-row-surplus",
+    }
+    ;
+    Superseded [run, row, sha256, verdict] => "run-record-superseded"
     ;
     EngineEnded => "engine-ended"
     ;
