@@ -82,14 +82,19 @@ pub(crate) fn own(path: &Path) -> Result<String, SecretError> {
     if is_open(about(path)?.mode()) {
         return Err(SecretError::Open { path: path.to_owned() });
     }
-    fs::read_to_string(path).map_err(|source| SecretError::File { path: path.to_owned(), source })
+    fs::read_to_string(path).map_err(unusable(path))
+}
+
+/// The error of a file of secrets, by the system's reason.
+fn unusable(path: &Path) -> impl FnOnce(io::Error) -> SecretError {
+    |source| SecretError::File { path: path.to_owned(), source }
 }
 
 /// What the system says of a file of secrets.
 fn about(path: &Path) -> Result<Metadata, SecretError> {
     match fs::metadata(path) {
         Ok(about) if about.is_dir() => Err(SecretError::Folder { path: path.to_owned() }),
-        about => about.map_err(|source| SecretError::File { path: path.to_owned(), source }),
+        about => about.map_err(unusable(path)),
     }
 }
 
@@ -98,8 +103,7 @@ pub(crate) fn text(path: &Path) -> Result<String, SecretError> {
     if !Rights::of(&about(path)?).is_closed(geteuid().as_raw(), getegid().as_raw()) {
         return Err(SecretError::GivenOpen { path: path.to_owned() });
     }
-    let text =
-        read_text(path, MAX_BYTES).map_err(|source| SecretError::File { path: path.to_owned(), source })?;
+    let text = read_text(path, MAX_BYTES).map_err(unusable(path))?;
     if text.trim().is_empty() { Err(SecretError::Empty { path: path.to_owned() }) } else { Ok(text) }
 }
 
@@ -140,7 +144,7 @@ fn keep(path: &Path, secrets: &str, lasts: bool) -> Result<(), SecretError> {
         aside.persist(path)?;
         if lasts { sync_folder(folder_of(path)) } else { Ok(()) }
     };
-    write().map_err(|source| SecretError::File { path: path.to_owned(), source })
+    write().map_err(unusable(path))
 }
 
 /// The content of the TOML file `path` of secrets.
@@ -178,7 +182,7 @@ where
 /// Writes secrets to the TOML file `path`, like [`keep`].
 pub(crate) fn write(path: &Path, secrets: &impl Serialize, lasts: bool) -> Result<(), SecretError> {
     let secrets = toml::to_string(secrets).map_err(io::Error::other);
-    let secrets = secrets.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
+    let secrets = secrets.map_err(unusable(path))?;
     keep(path, &secrets, lasts)
 }
 

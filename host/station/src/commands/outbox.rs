@@ -148,10 +148,10 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     let mut left = store.with(|store| Snapshot::take(store.folder())?.unsent())?;
     // What was for former sinks is not sent to them any more.
     left.retain(|unsent| sinks.iter().any(|sink| sink.name() == unsent.sink));
-    let entries: u32 = left.iter().map(|unsent| unsent.entries).sum();
     if sent == 0 && left.is_empty() {
         return print(NOTHING_LEFT);
     }
+    let entries: u32 = left.iter().map(|unsent| unsent.entries).sum();
     print(&format!("{sent} sent, {entries} not"))?;
     if left.is_empty() { Ok(Exit::Pass) } else { print(&table_of(&left)).map(|_| Exit::Error) }
 }
