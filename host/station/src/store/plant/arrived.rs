@@ -62,11 +62,11 @@ fn settles_job(to: &mut dyn Database, record: &Record) -> Result<bool, DatabaseE
     let Some(JobClaim { id, fence }) = &record.run.job else { return Ok(true) };
     let ended = &record.conclusion;
     let changed = match ended.verdict {
-        Verdict::Error => to.execute(sql::JOB_BACK, values![&ended.headline, id, *fence])?,
-        Verdict::Pass | Verdict::Fail => to.execute(sql::JOB_DONE, values![&record.run.id, id, *fence])?,
+        Verdict::Error => to.execute(sql::JOB_BACK, values![&ended.headline, *fence, id])?,
+        Verdict::Pass | Verdict::Fail => to.execute(sql::JOB_DONE, values![&record.run.id, *fence, id])?,
     };
     // A job that is not here, because it is another plant's or was lost, supersedes nothing; nor does one that waits for its next
-    // claim.
+    // claim, or was put back to before this one.
     Ok(changed == 1 || to.first(sql::SUPERSEDING_JOB, values![id, *fence], |_| Ok(()))?.is_none())
 }
 

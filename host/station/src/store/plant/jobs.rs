@@ -246,7 +246,7 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn fail(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
         let Claim { job, fence, .. } = claim;
-        self.carry_out("to take a job back", |to| to.execute(sql::JOB_BACK, values![said, job, *fence]))
+        self.carry_out("to take a job back", |to| to.execute(sql::JOB_BACK, values![said, *fence, job]))
             .map(drop)
     }
 

@@ -164,6 +164,50 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     assert_eq!(verdicts, [["ERROR"], ["ERROR"], [Verdict::Fail.to_string().as_str()]]);
 }
 
+/// A plant whose job was claimed as often as this before the plant was put back to when nobody had claimed it, and the last claim.
+fn put_back(claims: usize) -> (Server, Plant, Claim) {
+    let (server, mut plant, _) = with_a_job();
+    let claimed = (0..claims).map(|_| {
+        run_out(&server);
+        plant.claim(&worker("before")).unwrap().unwrap()
+    });
+    let last = claimed.last().unwrap();
+    let back = "UPDATE job SET state = 'waiting', fence = 0, attempts = 0, holder = NULL, until_ms = NULL;
+        UPDATE board SET fence = 0, holder = NULL, until_ms = NULL";
+    server.client("plant").batch_execute(back).unwrap();
+    (server, plant, last)
+}
+
+/// A claim that the plant has forgotten is later than all that it knows of.
+#[test]
+fn a_claim_from_before_a_plant_was_put_back_is_not_mistaken_for_an_earlier_one() {
+    // It judged nothing: the next claim counts, and is no other one.
+    let (server, mut plant, last) = put_back(2);
+    let error = run_of(&last, 1, End::Error(RunCause::Link));
+    plant.take(&error).unwrap();
+    let next = plant.claim(&worker("next")).unwrap().unwrap();
+    assert_eq!(next.fence, 3);
+    plant.take(&error).unwrap();
+    assert!(plant.renew_claim(&next).unwrap());
+    plant.take(&run_of(&next, 2, End::Pass)).unwrap();
+    assert_eq!(server.rows("SELECT nth FROM run ORDER BY id"), [["1"], ["1"]]);
+    assert_well(&server);
+    // Somebody has the job meanwhile: that claim is not taken from them for nothing, but a judgement ends the job.
+    for (end, is_held, counted) in
+        [(End::Error(RunCause::Link), true, ["1", "1"]), (End::Pass, false, ["1", "0"])]
+    {
+        let (server, mut plant, last) = put_back(2);
+        let next = plant.claim(&worker("next")).unwrap().unwrap();
+        assert_eq!(next.fence, 1);
+        plant.take(&run_of(&last, 1, end)).unwrap();
+        assert_eq!(plant.renew_claim(&next).unwrap(), is_held);
+        plant.take(&run_of(&next, 2, End::Pass)).unwrap();
+        assert_eq!(server.rows("SELECT nth FROM run ORDER BY id").concat(), counted);
+        assert_eq!(server.rows("SELECT state FROM job"), [["done"]]);
+        assert_well(&server);
+    }
+}
+
 /// A plant that gets the run of a job's fifth claim after that claim has run out, others have asked for a job, and `meanwhile`
 /// was done.
 fn fifth_claim(end: End, meanwhile: impl Fn(&mut Plant, &str)) -> Server {

@@ -1,6 +1,8 @@
 //! A plant that has lost data, which its stations still have.
 
-use halfrow_station::store::Plant;
+use halfrow_station::check::check_plant;
+use halfrow_station::record::JobClaim;
+use halfrow_station::store::{Plant, Snapshot};
 
 use super::cut::due;
 use super::refused::did;
@@ -11,6 +13,7 @@ use super::waiting::{await_sent, station};
 use crate::common::{NO_AUDIT, SERIALS, logged, query};
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
+use crate::jobs::{any, board, job, plan, worker};
 
 /// Empties the plant's tables.
 fn emptied(server: &Server) {
@@ -73,6 +76,37 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     is_as(&server, &Made::at(folder));
     let told = server.rows("SELECT operator_id, subject, detail FROM audit WHERE act = 'send-again'");
     assert_eq!(told, [["engel", "plant", "its disk broke"]]);
+}
+
+/// The copy of the plant does not have the claim: its job waits to be claimed for the first time.
+#[test]
+fn a_job_that_was_judged_after_the_copy_of_its_plant_is_done_by_the_run_that_is_sent_again() {
+    let server = Server::prepared();
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    assert!(plant.share(&board(0, "mock"), "engel").unwrap());
+    plant.add_jobs(&job(&plan(), &any()), 1).unwrap();
+    drop(plant);
+    let mut client = server.client("postgres");
+    client.batch_execute("CREATE DATABASE kept TEMPLATE plant").unwrap();
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    let claim = plant.claim(&worker("station 7")).unwrap().unwrap();
+    drop(plant);
+    let mut made = Made::new();
+    let of_job = Some(JobClaim { id: claim.job.clone(), fence: claim.fence });
+    let run = made.run(&Run { job: of_job, ..Run::of(claim.serial(), End::Pass) });
+    let (made, _) = send(made, server.address());
+    let done = "SELECT job.state, job.fence, run.id, run.nth FROM job JOIN run ON run.id = job.run_id";
+    let is_done = [["done", "1", &run, "1"]];
+    assert_eq!(server.rows(done), is_done);
+    client.batch_execute("DROP DATABASE plant WITH (FORCE)").unwrap();
+    client.batch_execute("ALTER DATABASE kept RENAME TO plant").unwrap();
+    assert_eq!(server.rows("SELECT state, fence FROM job"), [["waiting", "0"]]);
+    forget(&made);
+    send(made, server.address());
+    assert_eq!(server.rows(done), is_done);
+    let snapshot = Snapshot::of_plant(Plant::connect(&server.address()).unwrap()).unwrap();
+    let checked = check_plant(&snapshot, &mut |_| ()).unwrap();
+    assert!(checked.faults.is_empty(), "{:?}", checked.faults);
 }
 
 /// Its connections end before it is another one, so that this is never the first reason.
