@@ -113,7 +113,7 @@ impl Holding {
         self.known.lost()
     }
 
-    /// Gives it back.
+    /// Gives the board back.
     pub fn end(self) {}
 }
 
@@ -176,7 +176,8 @@ impl Known {
     }
 }
 
-/// Renews what is held until it is stopped, and then gives it back. Ends when it is lost.
+/// Renews what is held until it is stopped or lost, and gives the board back when it is stopped: it is held even when its job is
+/// not any more. If the plant is away for too long, the lease ends by itself.
 fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) {
     let mut wait = RENEWED;
     while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
@@ -186,14 +187,20 @@ fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) 
                 known.renew(asked);
                 wait = RENEWED;
             }
-            Ok(false) => return known.is_taken.store(true, Ordering::Relaxed),
+            Ok(false) => known.is_taken.store(true, Ordering::Relaxed),
             Err(error) => {
                 known.note(Said::of(&error).to_string());
                 wait = AGAIN;
             }
         }
-        if known.lost().is_some() {
-            return;
+        match known.lost() {
+            None => {}
+            Some(Lost::Unreached { .. }) => return,
+            Some(Lost::Taken { .. }) => {
+                // Its lane may still use it until then.
+                let _ = stopped.recv();
+                break;
+            }
         }
     }
     give_back(plant, held);

@@ -223,6 +223,7 @@ fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() 
     let ended: Value = serde_json::from_str(&did.said).unwrap();
     let headline = ended["headline"].as_str().unwrap();
     assert!(headline.contains("the board shelf-0 is not ours any more"), "{did:?}");
+    assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
     let data = folder.path().join("data");
     assert_eq!(query(&data, "SELECT verdict FROM run"), ["ERROR"]);
     assert_eq!(query(&data, "SELECT cause FROM run"), ["station"]);
