@@ -19,7 +19,7 @@ use crate::store::{Folder, Store};
 /// Copy all that the station has kept to a new folder, while runs go on
 ///
 /// The copy is checked as `restore` checks it. Exit codes: 0 it can be restored, 2 there are no results, or the folder is not
-/// empty, 3 it was not made, or is kept and has faults, 4 another copy is being made there.
+/// empty, 3 it was not made, or is kept and has faults or lacks evidence, 4 another copy is being made there.
 #[derive(Debug, Args)]
 pub(super) struct Backup {
     /// The folder, which must be new or empty
@@ -34,18 +34,24 @@ pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(error) => vec![error.to_string()],
     };
-    let Copied { runs, evidence, .. } = copied;
     let to = arguments.to.display();
-    let (runs, pieces) = (count(runs, "run"), count(evidence, "piece"));
-    let are_in = format!("{runs} and {pieces} of evidence are in {to}{}", with_unknown(copied));
-    if faults.is_empty() {
-        return print(&are_in);
+    let (runs, pieces) = (count(copied.runs, "run"), count(copied.evidence, "piece"));
+    let mut told = format!("{runs} and {pieces} of evidence are in {to}{}", with_unknown(&copied));
+    let left_out = &copied.left_out;
+    if !left_out.is_empty() {
+        told += &format!("; without {} that no row names", count(left_out.len(), "piece"));
     }
-    let mut lines: Vec<_> = faults.iter().map(|fault| format!("fault: {fault}")).collect();
-    lines.push(format!(
-        "{are_in}; `restore` refuses it for {}, and `halfrow-station check` says whether the station has them, too",
-        count(faults.len(), "fault")
-    ));
+    if !faults.is_empty() {
+        told += &format!(
+            "; `restore` refuses it for {}, and `halfrow-station check` says whether the station has them, too",
+            count(faults.len(), "fault")
+        );
+    }
+    let mut lines: Vec<_> = faults.iter().chain(left_out).map(|fault| format!("fault: {fault}")).collect();
+    if lines.is_empty() {
+        return print(&told);
+    }
+    lines.push(told);
     console::tell(&lines.join("\n"));
     Ok(Exit::Error)
 }
@@ -62,18 +68,18 @@ pub(super) struct Restore {
 
 pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
     let copied = kept::restore(&Folder::new(&arguments.from), &arguments.data)?;
-    let Copied { runs, evidence, unknown } = copied;
-    let rest = with_unknown(copied);
+    let rest = with_unknown(&copied);
+    let Copied { runs, evidence, unknown, .. } = copied;
     let (runs, pieces, faults) = (count(runs, "run"), count(evidence, "piece"), count(unknown, "fault"));
     print(&format!("{runs} and {pieces} of evidence were read back, {faults} found{rest}"))
 }
 
 /// What a copy has beyond what its rows name.
-fn with_unknown(Copied { unknown, .. }: Copied) -> String {
-    if unknown == 0 {
+fn with_unknown(Copied { unknown, .. }: &Copied) -> String {
+    if *unknown == 0 {
         return String::new();
     }
-    let records = count(unknown, "record");
+    let records = count(*unknown, "record");
     format!("; with them {records} of runs that no row names, which `halfrow-station check` tells")
 }
 

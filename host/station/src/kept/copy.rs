@@ -15,7 +15,7 @@ use crate::record::{BlobError, Blobs, Piece, synced};
 use crate::store::{ASIDE, Folder, Snapshot, Store, StoreError};
 
 /// What was copied.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Copied {
     /// Runs that are over.
     pub runs: usize,
@@ -23,6 +23,8 @@ pub struct Copied {
     pub evidence: usize,
     /// Records of runs that have no row; what these records name is copied, too.
     pub unknown: usize,
+    /// What is wrong with each piece that is left out and that is, or may be, such a record or what one names.
+    pub left_out: Vec<String>,
 }
 
 /// A folder that is not copied. Nothing that looks like a copy is left then.
@@ -235,9 +237,9 @@ fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Cop
     };
     let named = copy.named_evidence()?;
     let evidence = copy_named(&named, &from.blobs(), &to.blobs(), ends)?;
-    let unknown = copy_unnamed(&copy, (&pieces, &named), &from.blobs(), &to.blobs())?;
+    let (unknown, left_out) = copy_unnamed(&copy, (&pieces, &named), [&from.blobs(), &to.blobs()], ends)?;
     synced(aside).map_err(StoreError::from)?;
-    Ok(Copied { runs: copy.final_runs()?.len(), evidence, unknown })
+    Ok(Copied { runs: copy.final_runs()?.len(), evidence, unknown, left_out })
 }
 
 /// Copies the evidence that rows name, and returns how many pieces. What is left out may have been removed by its age: a check of the
@@ -262,25 +264,45 @@ fn copy_named(
     Ok(evidence)
 }
 
-/// Copies the records among `pieces` that no row names, and what they name; returns how many of them are of runs
-/// without a row.
+/// Copies the records among `pieces` that no row names, and what they name; returns how many of them are of runs without a row,
+/// and what is wrong with the pieces that are left out. No check of the copy would miss those.
 fn copy_unnamed(
     copy: &Snapshot,
     (pieces, named): (&[Piece], &BTreeSet<String>),
-    from: &Blobs,
-    to: &Blobs,
-) -> Result<usize, StoreError> {
-    let records = from.unnamed_records(pieces, named)?;
-    for record in &records {
-        to.put(&from.get(&record.sha256)?)?;
+    [from, to]: [&Blobs; 2],
+    ends: fn(&BlobError) -> bool,
+) -> Result<(usize, Vec<String>), StoreError> {
+    let (mut records, mut left_out) = (Vec::new(), BTreeSet::new());
+    for found in from.each_unnamed_record(pieces, named) {
+        let Some(record) = unless_left_out(found, ends, &mut left_out)? else { continue };
+        let Some(bytes) = unless_left_out(from.get(&record.sha256), ends, &mut left_out)? else { continue };
+        to.put(&bytes)?;
         for hash in record.attachments.iter().filter(|hash| !named.contains(*hash)) {
-            match from.get(hash) {
-                Err(error) if error.is_gone() => {}
-                bytes => drop(to.put(&bytes?)?),
+            if let Some(bytes) = unless_left_out(from.get(hash), ends, &mut left_out)? {
+                to.put(&bytes)?;
             }
         }
+        records.push(record);
     }
-    Ok(copy.without_row(records)?.len())
+    Ok((copy.without_row(records)?.len(), left_out.into_iter().collect()))
+}
+
+/// What was read; none if it is left out, which is noted unless it is gone.
+fn unless_left_out<T>(
+    read: Result<T, BlobError>,
+    ends: fn(&BlobError) -> bool,
+    left_out: &mut BTreeSet<String>,
+) -> Result<Option<T>, BlobError> {
+    match read {
+        Ok(read) => Ok(Some(read)),
+        Err(error) if ends(&error) => Err(error),
+        Err(error) => {
+            if !error.is_gone() {
+                left_out.insert(error.to_string());
+            }
+            Ok(None)
+        }
+    }
 }
 
 /// What is wrong with the copy's database is wrong with the one that was copied.

@@ -34,8 +34,17 @@ impl Blobs {
         pieces: &[Piece],
         named: &BTreeSet<String>,
     ) -> Result<Vec<UnnamedRecord>, BlobError> {
+        self.each_unnamed_record(pieces, named).collect()
+    }
+
+    /// Like [`Self::unnamed_records`], with an error for each piece that cannot be read.
+    pub(crate) fn each_unnamed_record(
+        &self,
+        pieces: &[Piece],
+        named: &BTreeSet<String>,
+    ) -> impl Iterator<Item = Result<UnnamedRecord, BlobError>> {
         let unnamed = pieces.iter().filter(|piece| !named.contains(&piece.hash));
-        unnamed.filter_map(|piece| self.as_record(&piece.hash).transpose()).collect()
+        unnamed.filter_map(|piece| self.as_record(&piece.hash).transpose())
     }
 
     fn as_record(&self, hash: &str) -> Result<Option<UnnamedRecord>, BlobError> {

@@ -45,7 +45,10 @@ fn a_backup_is_of_its_moment_while_runs_go_on() {
     let mut made = made();
     let place = tempfile::tempdir().unwrap();
     let to = place.path().join("copy");
-    assert_eq!(backup(&made.folder(), &to).unwrap(), Copied { runs: 3, evidence: 6, unknown: 0 });
+    assert_eq!(
+        backup(&made.folder(), &to).unwrap(),
+        Copied { runs: 3, evidence: 6, unknown: 0, left_out: Vec::new() }
+    );
     let copy = Folder::new(&to);
     let then = runs(&made.folder());
     made.run(&Run { lane: "2".to_owned(), ..Run::of("S5", End::Pass) });
@@ -206,7 +209,10 @@ fn old_evidence_is_removed_and_no_record_or_row() {
     assert_eq!(sound(&made.folder()), [3, 1, 3, 4]);
     let place = tempfile::tempdir().unwrap();
     let to = place.path().join("copy");
-    assert_eq!(backup(&made.folder(), &to).unwrap(), Copied { runs: 3, evidence: 3, unknown: 0 });
+    assert_eq!(
+        backup(&made.folder(), &to).unwrap(),
+        Copied { runs: 3, evidence: 3, unknown: 0, left_out: Vec::new() }
+    );
     assert_eq!(sound(&Folder::new(&to)), [3, 1, 3, 4]);
 }
 

@@ -106,7 +106,7 @@ fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {
     fs::copy(Made::new().closed().path().join("station.db"), folder.path().join("station.db")).unwrap();
     let place = tempfile::tempdir().unwrap();
     let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
-    let copied = Copied { runs: 0, evidence: 0, unknown: 1 };
+    let copied = Copied { runs: 0, evidence: 0, unknown: 1, left_out: Vec::new() };
     assert_eq!(backup(&Folder::new(folder.path()), &copy).unwrap(), copied);
     assert_eq!(restore(&Folder::new(&copy), &again).unwrap(), copied);
     for place in [folder.path(), &copy, &again] {
@@ -119,6 +119,33 @@ fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {
     assert!(code == 3 && said.contains(&run) && said.contains(record), "{said}");
     let copied = did(&folder, &["backup", place.path().join("third").to_str().unwrap()]).1;
     assert!(copied.contains("1 record of runs that no row names"), "{copied}");
+}
+
+/// A bad sector below what is left of one run is no reason to have no copy of all the rest.
+#[test]
+fn a_copy_lacks_what_no_row_names_and_is_damaged_and_says_so() {
+    let mut made = Made::new();
+    made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
+    made.run(&Run { lane: "2".to_owned(), ..Run::of("S2", End::Pass) });
+    let [seen] = &query(made.as_ref(), "SELECT sha256 FROM attachment")[..] else { panic!() };
+    let record = query(made.as_ref(), "SELECT record_sha256 FROM run WHERE verdict = 'PASS'").remove(0);
+    let [seen, record] = [seen, &record].map(|hash| made.folder().blobs().path(hash));
+    let folder = made.closed();
+    fs::copy(Made::new().closed().path().join("station.db"), folder.path().join("station.db")).unwrap();
+    fs::write(&seen, "other").unwrap();
+    fs::write(&record, fs::read_to_string(&record).unwrap() + " ").unwrap();
+    let place = tempfile::tempdir().unwrap();
+    let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
+    let (code, said, complained) = did(&folder, &["backup", copy.to_str().unwrap()]);
+    assert_eq!((code, complained.as_str()), (3, ""), "{said}");
+    for damaged in [seen, record] {
+        let told = format!("fault: {} holds other bytes", damaged.display());
+        assert!(said.lines().any(|line| line.starts_with(&told)), "{said}");
+    }
+    let rest = "0 runs and 0 pieces of evidence are in ";
+    assert!(said.contains(rest) && said.contains("; with them 1 record of runs that no row names"), "{said}");
+    assert!(said.ends_with("; without 2 pieces that no row names\n"), "{said}");
+    assert_eq!(restore(&Folder::new(&copy), &again).unwrap().unknown, 1);
 }
 
 /// The power failed between the record and its row: the next start ends the run as ERROR, with another record.
