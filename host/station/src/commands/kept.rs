@@ -68,10 +68,8 @@ pub(super) struct Restore {
 
 pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
     let copied = kept::restore(&Folder::new(&arguments.from), &arguments.data)?;
-    let rest = with_unknown(&copied);
-    let Copied { runs, evidence, unknown, .. } = copied;
-    let (runs, pieces, faults) = (count(runs, "run"), count(evidence, "piece"), count(unknown, "fault"));
-    print(&format!("{runs} and {pieces} of evidence were read back, {faults} found{rest}"))
+    let (runs, pieces) = (count(copied.runs, "run"), count(copied.evidence, "piece"));
+    print(&format!("{runs} and {pieces} of evidence were read back{}", with_unknown(&copied)))
 }
 
 /// What a copy has beyond what its rows name.
