@@ -260,19 +260,21 @@ impl Lane {
     /// Makes sure that the process is gone.
     fn end(mut self, end: End) -> End {
         let is_over = matches!(end, End::Done | End::Refused(_) | End::Died(_));
-        let mut status = None;
+        let mut own = None;
         if is_over {
             // A process that is to be killed would not end by itself, so its stdin stays open.
             drop(self.orders.take());
-            status = waited(&mut self.child, GRACE);
+            own = waited(&mut self.child, GRACE);
         }
-        if status.is_none() {
-            status = killed(&mut self.child);
-        }
-        match (end, status) {
-            (End::Killed(why), None) => End::Stuck(Saying::LaneStuck { why }.into()),
+        let is_gone = own.is_some() || killed(&mut self.child).is_some();
+        match (end, own) {
+            (End::Killed(why), _) if !is_gone => End::Stuck(Saying::LaneStuck { why }.into()),
+            (End::Died(_) | End::Done | End::Refused(_), _) if !is_gone => {
+                End::Stuck(Saying::LaneEndless.into())
+            }
             (End::Died(_), Some(status)) => End::Died(Saying::LaneDied { status: status.to_string() }.into()),
-            (End::Died(_) | End::Done | End::Refused(_), None) => End::Stuck(Saying::LaneEndless.into()),
+            // It has closed its output. The end of its stdin told it to end.
+            (End::Died(_), None) => End::Killed(Saying::LaneDeaf { seconds: GRACE.as_secs_f64() }.into()),
             (end, _) => end,
         }
     }

@@ -70,6 +70,15 @@ fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
     assert_eq!(end_of(&told, silence, slow), End::Done);
 }
 
+/// How it ended is the station's doing then, and says nothing of the lane.
+#[test]
+fn a_lane_that_closes_its_output_and_does_not_end_is_killed_for_that() {
+    let lane = format!("read -r job\nprintf '{}'\nexec sleep 60 >&-\n", begun());
+    let end = end_of_script(&lane, String::new(), HANG, &mut Slow(Duration::ZERO));
+    let End::Killed(why) = end else { panic!("{end:?}") };
+    assert_eq!((why.code.as_str(), &why.parameters["seconds"]), ("lane-deaf", &10.0.into()));
+}
+
 /// It would fill the station's memory.
 #[test]
 fn a_lane_whose_line_has_no_end_is_killed_and_quoted_in_part() {
