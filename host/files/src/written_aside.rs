@@ -21,7 +21,7 @@ use tempfile::NamedTempFile;
 pub use claim::Claim;
 pub use error::{Unfinished, WriteAsideError};
 pub use folder::{AsideFolder, Misplaced};
-pub use place::{Place, check, check_folder, clear};
+pub use place::{Place, check, check_folder, clear, clear_older};
 use rights::Rights;
 pub use under_way::abandon_all;
 

@@ -4,6 +4,7 @@ use std::fs;
 use std::io;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Component, Path, PathBuf};
+use std::time::Duration;
 
 use super::{WriteAsideError, folder_of, under_way};
 
@@ -54,6 +55,12 @@ fn is_link(path: &Path) -> bool {
 #[must_use]
 pub fn clear(folder: &Path) -> Vec<PathBuf> {
     under_way::clean(folder)
+}
+
+/// Clears `folder`, to which other computers may write, of files that killed runs left in it and that were worth nothing until they
+/// were whole. Not every file system shows one computer the locks of another, so files stay that were written within `age`.
+pub fn clear_older(folder: &Path, age: Duration) {
+    under_way::clean_older(folder, age);
 }
 
 /// A place, however it is named: two paths that lead to the same file or folder, or would, are the same place.

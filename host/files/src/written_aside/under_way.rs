@@ -9,12 +9,13 @@
 
 use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
-use std::fs::{self, DirEntry, File};
+use std::fs::{self, DirEntry, File, Metadata};
 use std::io;
 use std::os::unix::ffi::OsStrExt as _;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use tempfile::{NamedTempFile, TempDir};
 
@@ -161,6 +162,20 @@ pub(super) fn shortened(name: &OsStr) -> &OsStr {
 pub(super) fn clean(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter(is_one_of_ours).filter_map(|entry| clear(&entry.path())).collect()
+}
+
+/// Removes files from `folder` that were worth nothing until they were whole, that nobody holds, and that were last written at least
+/// `age` ago.
+pub(super) fn clean_older(folder: &Path, age: Duration) {
+    let is_old = |entry: &DirEntry| {
+        let about = entry.metadata().ok().filter(Metadata::is_file);
+        let written = about.and_then(|about| about.modified().ok());
+        written.and_then(|written| written.elapsed().ok()).is_some_and(|past| past >= age)
+    };
+    let is_aside = |entry: &DirEntry| entry.file_name().as_bytes().ends_with(ASIDE.as_bytes());
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let left = entries.filter(|entry| is_aside(entry) && is_one_of_ours(entry) && is_old(entry));
+    left.for_each(|entry| drop(clear(&entry.path())));
 }
 
 fn clear(path: &Path) -> Option<PathBuf> {

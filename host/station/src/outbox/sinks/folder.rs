@@ -4,8 +4,9 @@ use std::fs::{self, Permissions};
 use std::io;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-use halfrow::files::written_aside::{WriteAsideError, write_aside};
+use halfrow::files::written_aside::{WriteAsideError, clear_older, write_aside};
 
 use super::SinkError;
 use super::letter::letter;
@@ -19,14 +20,23 @@ pub(super) struct FolderSink {
     pub(super) name: String,
     pub(super) folder: PathBuf,
     pub(super) format: Format,
+    /// Whether it was cleared of what a killed program left in it.
+    pub(super) is_clear: bool,
 }
 
+/// How old a file is that nobody writes any more, on a share of which no lock may tell.
+const LEFT: Duration = Duration::from_secs(86_400);
+
 impl FolderSink {
-    fn put(&self, parcel: &Parcel) -> Result<(), SinkError> {
+    fn put(&mut self, parcel: &Parcel) -> Result<(), SinkError> {
         let Some(letter) = letter(parcel, self.format)? else { return Ok(()) };
         // A folder made here would hide the one that is to be mounted.
         if !self.folder.is_dir() {
             return Err(SinkError::NoFolder { path: self.folder.clone() });
+        }
+        if !self.is_clear {
+            clear_older(&self.folder, LEFT);
+            self.is_clear = true;
         }
         let path = self.folder.join(letter.id + letter.ending);
         match write_aside(&path, false, |file| file.write_all(&letter.bytes)) {
@@ -82,7 +92,8 @@ mod tests {
     #[test]
     fn a_read_only_folder_is_told_with_what_opens_it_to_the_service() {
         let folder = PathBuf::from("/mnt/share/results");
-        let sink = FolderSink { name: "share".to_owned(), folder, format: Format::default() };
+        let sink =
+            FolderSink { name: "share".to_owned(), folder, format: Format::default(), is_clear: false };
         let failed = |kind| {
             let path = sink.folder.join("run.json");
             sink.unwritten(WriteAsideError::Io { path, source: io::Error::from(kind) })

@@ -184,7 +184,7 @@ pub fn open(settings: &SinkSettings, station: &str) -> Result<Box<dyn Sink>, Sin
     let name = settings.name.clone();
     Ok(match &settings.to {
         Destination::Folder { path, format } => {
-            Box::new(folder::FolderSink { name, folder: path.clone(), format: *format })
+            Box::new(folder::FolderSink { name, folder: path.clone(), format: *format, is_clear: false })
         }
         Destination::Post { address, format, token, proxy } => {
             Box::new(post::PostSink::new(name, address, *format, token.as_deref(), proxy.as_ref())?)

@@ -1,9 +1,10 @@
 //! A folder into which results are written.
 
-use std::fs;
+use std::fs::{self, File};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::Command;
+use std::time::{Duration, SystemTime};
 
 use halfrow_station::store::Folder;
 
@@ -66,6 +67,32 @@ fn nothing_is_sent_of_a_station_that_is_not_there_and_none_is_made() {
     let sent = send(folder.path(), sink);
     assert!(sent.code == Some(3) && sent.complained.contains("check that it is there"), "{sent:?}");
     assert_eq!(names(folder.path()), ["plan.toml", "station.toml"]);
+}
+
+/// Whether another computer still writes a file, no lock tells for certain: not every share has locks that all computers see.
+#[test]
+fn what_a_power_cut_left_in_the_folder_is_removed_after_a_day() {
+    let (folder, sink) = station("record");
+    let share = folder.path().join("share");
+    fs::create_dir(&share).unwrap();
+    let [old, young, locked, other] = [
+        ".halfrow-aaaaaaaaaa.aside",
+        ".halfrow-bbbbbbbbbb.aside",
+        ".halfrow-cccccccccc.aside",
+        "notes.aside",
+    ]
+    .map(|name| share.join(name));
+    let written = |path: &Path, hours: u64| {
+        let file = File::create(path).unwrap();
+        file.set_modified(SystemTime::now() - Duration::from_secs(3600 * hours)).unwrap();
+        file
+    };
+    let held = written(&locked, 25);
+    held.lock().unwrap();
+    let _ = [(&old, 25), (&young, 23), (&other, 25)].map(|(path, hours)| written(path, hours));
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
+    assert_eq!([old, young, locked, other].map(|path| path.exists()), [false, true, true, true]);
 }
 
 /// The service's own files are for nobody else, but what it writes here is for everybody who may read the folder.
