@@ -5,6 +5,7 @@
 
 mod address;
 pub(super) mod arrived;
+mod audit;
 mod boards;
 mod jobs;
 mod kept;
