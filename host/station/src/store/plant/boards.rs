@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::super::database::{Database, DatabaseError, Row, values};
 use super::super::{Snapshot, StoreError, statements as sql};
-use super::Plant;
+use super::{LOCK_BOARDS, Plant};
 use crate::clock::{self, Moment};
 use crate::ids;
 
@@ -109,6 +109,8 @@ impl Plant {
     pub fn share(&mut self, board: &SharedBoard, operator: &str) -> Result<bool, StoreError> {
         let SharedBoard { name, kind, target, product, serial, station, .. } = board;
         self.audited(operator, "share board", name, target, |to| {
+            // Two who share one unit under two names at once would not see each other's board.
+            to.batch(LOCK_BOARDS)?;
             to.execute(sql::ADD_BOARD, values![name, kind, target, product, serial, station])
         })
     }

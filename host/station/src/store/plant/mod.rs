@@ -315,3 +315,5 @@ impl Plant {
 
 /// Lets one program at a time prepare a plant. The lock ends with the connection.
 const LOCK: &str = "SELECT pg_advisory_lock(7249613001)";
+/// Lets one program at a time share a board. The lock ends with the transaction.
+const LOCK_BOARDS: &str = "SELECT pg_advisory_xact_lock(7249613002)";

@@ -8,7 +8,7 @@ use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
 use serde_json::Value;
 
 use super::{any, board, job, plan, run_out, settings, shared, with_a_job, worker};
-use crate::common::program;
+use crate::common::{program, until};
 use crate::plant::server::Server;
 
 fn waiter(name: &str) -> Waiter {
@@ -39,6 +39,31 @@ fn who_waits_longest_is_the_next_and_a_job_comes_after_people() {
     plant.give_back(&held).unwrap();
     assert!(plant.claim(&worker("12")).unwrap().is_some());
     assert_eq!(plant.wait(&Waiter::new("none", "first", "12").unwrap()).unwrap(), Turn::Never);
+}
+
+/// The rows of both are ready before either is committed.
+#[test]
+fn of_two_people_who_share_a_unit_under_two_names_at_once_one_is_refused() {
+    let server = Server::prepared();
+    let mut client = server.client("plant");
+    let wait = "CREATE FUNCTION wait() RETURNS trigger LANGUAGE plpgsql AS
+            $$ BEGIN PERFORM pg_advisory_xact_lock(1); RETURN NEW; END $$;
+        CREATE TRIGGER wait BEFORE INSERT ON board FOR EACH ROW EXECUTE FUNCTION wait();
+        SELECT pg_advisory_lock(1)";
+    client.batch_execute(wait).unwrap();
+    let shared = thread::scope(|scope| {
+        let share = |number: usize| {
+            let one = SharedBoard { name: format!("shelf-{number}"), ..board(0, "mock") };
+            let mut plant = Plant::connect(&server.address()).unwrap();
+            scope.spawn(move || plant.share(&one, "engel").unwrap())
+        };
+        let both = [share(1), share(2)];
+        let waiting = "SELECT 1 FROM pg_locks WHERE locktype = 'advisory' AND NOT granted";
+        until("both to wait", || server.rows(waiting).len() == 2);
+        client.batch_execute("SELECT pg_advisory_unlock(1)").unwrap();
+        both.map(|one| one.join().unwrap())
+    });
+    assert_eq!(shared.iter().filter(|is_shared| **is_shared).count(), 1, "{shared:?}");
 }
 
 #[test]
