@@ -12,13 +12,13 @@ pub(super) const SCHEMAS: [&str; 7] = [
     include_str!("../../sql/schema-7.sql"),
 ];
 
-/// Words of a plant's statements about boards: whether a board is free, whether the last run of its unit was no ERROR of the last
-/// ten minutes, when that run ended if it was an ERROR that nobody asked for, the [pairing](super::Claim::pairing) of a job's plan with it,
-/// the last judgement of its unit by that plan, whether somebody waits for it who reaches it, a waiter's station, and the time by the
-/// plant's clock, in milliseconds since 1970, UTC. Earlier ones use later ones.
+/// Words of a plant's statements about boards. Earlier ones use later ones.
 pub(super) const OF_BOARDS: [(&str, &str); 8] = [
+    // Whether a board is free.
     ("{free}", "(board.holder IS NULL OR board.until_ms < {now_ms})"),
+    // Whether the last run of its unit was no ERROR of the last ten minutes.
     ("{is_well}", "coalesce({erred_ms} < {now_ms} - 600000, TRUE)"),
+    // When that run ended, if it was an ERROR that nobody asked for.
     (
         "{erred_ms}",
         "(SELECT CASE WHEN run.verdict = 'ERROR' AND run.cause <> 'operator' THEN run.ended_ms END
@@ -27,7 +27,9 @@ pub(super) const OF_BOARDS: [(&str, &str); 8] = [
              AND run.nth > 0
            ORDER BY run.started_ms DESC, run.id DESC LIMIT 1)",
     ),
+    // The pairing (`Claim::pairing`) of a job's plan with it.
     ("{pairing}", "concat_ws(' ', job.plan_sha256, board.target, board.serial)"),
+    // The last judgement of its unit by that plan.
     (
         "{last_verdict}",
         "(SELECT run.verdict FROM run JOIN unit ON unit.id = run.unit_id
@@ -35,12 +37,15 @@ pub(super) const OF_BOARDS: [(&str, &str); 8] = [
              AND run.nth > 0 AND run.verdict IN ('PASS', 'FAIL')
            ORDER BY run.id DESC LIMIT 1)",
     ),
+    // Whether somebody waits for it who reaches it.
     (
         "{waited_for}",
         "EXISTS (SELECT 1 FROM waiter WHERE waiter.kind = board.kind AND waiter.until_ms >= {now_ms}
            AND board.station IN ('', {waiter_station}))",
     ),
+    // A waiter's station.
     ("{waiter_station}", "substring(waiter.holder FROM '^(.*) ')"),
+    // The time by the plant's clock, in milliseconds since 1970, UTC.
     ("{now_ms}", "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)"),
 ];
 
