@@ -59,7 +59,7 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     for (table, key) in TABLES {
         compare(table, snapshot.table(table, key), look.rebuilt.table(table, key), &mut faults)?;
     }
-    faults.extend(snapshot.contradicted_waivers()?.into_iter().map(|run| Fault::Waiver { run }));
+    faults.extend(snapshot.waivers_unlike_audit()?.into_iter().map(|run| Fault::Waiver { run }));
     let unnamed = folder.blobs().unnamed_records(&pieces, &snapshot.named_evidence()?)?;
     let superseded = superseded::superseded(&folder.blobs(), &unnamed, &snapshot)?;
     faults.extend(without_row(unnamed, &snapshot)?);

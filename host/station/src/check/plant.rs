@@ -157,7 +157,7 @@ impl Look<'_> {
         let surplus = |table| move |key| Fault::Surplus { table, key };
         self.faults.extend(self.plant.unnamed_records()?.into_iter().map(surplus("record")));
         self.faults.extend(self.plant.other_mismatches()?.into_iter().map(surplus("mismatch")));
-        let waivers = self.plant.contradicted_waivers_of_plant()?.into_iter();
+        let waivers = self.plant.contradicted_waivers()?.into_iter();
         self.faults.extend(waivers.map(|run| Fault::Waiver { run }));
         let jobs = self.plant.jobs_without_runs()?.into_iter();
         self.faults.extend(jobs.map(|job| Fault::Job { job }));

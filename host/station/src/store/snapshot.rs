@@ -188,7 +188,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub(crate) fn contradicted_waivers(&self) -> Result<Vec<String>, StoreError> {
+    pub(crate) fn waivers_unlike_audit(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell its waivers", statements::WAIVERS_UNLIKE_AUDIT, values![], |row| row.get(0))
     }
 

@@ -88,7 +88,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::kept_runs`].
-    pub(crate) fn contradicted_waivers_of_plant(&self) -> Result<Vec<String>, StoreError> {
+    pub(crate) fn contradicted_waivers(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell its waivers", sql::CONTRADICTED_WAIVERS, &[], |row| row.get(0))
     }
 
