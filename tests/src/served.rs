@@ -86,9 +86,9 @@ impl Served {
     /// If there is no such board or no port.
     #[must_use]
     pub fn on_a_tcp_port(host: &str, board: &str) -> Self {
-        let address = format!("{host}:0");
+        let place = format!("{host}:0").parse().unwrap();
         Self::start(board, move |board, mut ended, said| {
-            let port = Port::listen(&address)?;
+            let port = Port::listen(&place)?;
             said.send(format!("tcp:{}", port.address()?)).unwrap();
             port.serve(board, &mut ended)
         })

@@ -76,7 +76,6 @@ codes::codes! {
     }
     ServeError {
         Door [what] => "serving-place-not-opened",
-        Address (address) => "serving-address-malformed",
         Exists (path) => "serving-link-exists",
         Board => "served-board-failed",
     }

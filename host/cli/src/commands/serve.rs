@@ -8,7 +8,7 @@ use clap::Args;
 use super::{Failure, print};
 use crate::arguments::board::refuse_recording;
 use crate::exit::Exit;
-use crate::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
+use crate::serve::{Hosted, Name, Port, Pty, ServeError, TcpPlace, Traffic};
 use crate::signals;
 use halfrow::target::Target;
 
@@ -18,20 +18,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "TARGET", default_value = "mock", value_parser = crate::arguments::board::target())]
     board: Target,
     /// A TCP port instead of a pseudo-terminal: PORT of this computer alone, or ADDRESS:PORT; 0 for any that is free
-    #[arg(long, value_name = "PORT", value_parser = door)]
-    tcp: Option<String>,
+    #[arg(long, value_name = "PORT")]
+    tcp: Option<TcpPlace>,
     /// A symbolic link to the pseudo-terminal, which has another name every time
     #[arg(long, value_name = "PATH", conflicts_with = "tcp")]
     link: Option<PathBuf>,
-}
-
-/// A port, or an address with one. Whether the address is this computer's shows later.
-fn door(text: &str) -> Result<String, String> {
-    let (host, port) = text.rsplit_once(':').unwrap_or(("127.0.0.1", text));
-    match port.parse::<u16>() {
-        Ok(_) if !host.is_empty() => Ok(text.to_owned()),
-        _ => Err("give PORT or ADDRESS:PORT, with a port of 0 to 65535".to_owned()),
-    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -40,8 +31,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let signal = signals::stop();
     let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;
     let served = match &arguments.tcp {
-        Some(address) => {
-            let port = Port::listen(address).map_err(failed)?;
+        Some(place) => {
+            let port = Port::listen(place).map_err(failed)?;
             let address = port.address().map_err(failed)?;
             print(&format!("tcp:{address}"))?;
             port.serve(&mut board, &mut ended)

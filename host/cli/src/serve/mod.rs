@@ -21,7 +21,7 @@ use halfrow::target::Target;
 use halfrow_protocol::Decoder;
 
 pub use pty::{Name, Pty};
-pub use tcp::Port;
+pub use tcp::{NoTcpPlace, Port, TcpPlace};
 
 /// How many bytes may wait in either direction before the sender has to wait.
 const QUEUE: usize = 64 * 1024;
@@ -46,9 +46,6 @@ pub enum ServeError {
         #[source]
         source: std::io::Error,
     },
-    /// The address to serve the board at is not a port, or an address and a port.
-    #[error("`{0}` is no TCP port to listen on; give a PORT of this computer, 0 to 65535, or ADDRESS:PORT")]
-    Address(String),
     /// The link to the served board cannot be made, because something of that name exists.
     #[error("{0} is there already; remove it, or choose another name with --link")]
     Exists(std::path::PathBuf),
@@ -62,7 +59,7 @@ impl ServeError {
     #[must_use]
     pub fn exit(&self) -> Exit {
         match self {
-            Self::Address(_) | Self::Exists(_) => Exit::Usage,
+            Self::Exists(_) => Exit::Usage,
             Self::Door { .. } | Self::Board(_) => Exit::Error,
         }
     }

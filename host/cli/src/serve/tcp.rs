@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::os::fd::AsRawFd;
+use std::str::FromStr;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -29,6 +30,28 @@ const PATIENCE: Patience = Patience { unheard: Duration::from_secs(2), silent: D
 /// What ser2net sends to a second host, so that hosts need not tell the two apart.
 const IN_USE: &[u8] = b"Port already in use\r\n";
 
+/// Where to listen: a host and a port, or a PORT that only this computer can reach. Port 0 is any free port. Whether the host is this
+/// computer shows when it is listened on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TcpPlace(String);
+
+/// A text that is no [`TcpPlace`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("give PORT or ADDRESS:PORT, with a port of 0 to 65535")]
+pub struct NoTcpPlace;
+
+impl FromStr for TcpPlace {
+    type Err = NoTcpPlace;
+
+    fn from_str(text: &str) -> Result<Self, NoTcpPlace> {
+        let (host, port) = text.rsplit_once(':').unwrap_or(("127.0.0.1", text));
+        match port.parse::<u16>() {
+            Ok(port) if !host.is_empty() => Ok(Self(format!("{host}:{port}"))),
+            _ => Err(NoTcpPlace),
+        }
+    }
+}
+
 /// A TCP port that is listened on.
 #[derive(Debug)]
 pub struct Port {
@@ -47,22 +70,13 @@ impl Patience {
 }
 
 impl Port {
-    /// Listens on `address`: HOST:PORT, or a PORT that only this computer can reach. Port 0 is any free port.
+    /// Listens on `place`.
     ///
     /// # Errors
-    /// [`ServeError::Address`] when it is not an address; [`ServeError::Door`] when it is taken or not this computer's.
-    pub fn listen(address: &str) -> Result<Self, ServeError> {
-        let local = address.parse::<u16>().map(|port| format!("127.0.0.1:{port}"));
-        let has_port = |address: &str| {
-            let port = address.rsplit_once(':').filter(|(host, _)| !host.is_empty()).map(|(_, port)| port);
-            port.is_some_and(|port| port.parse::<u16>().is_ok())
-        };
-        let address = local.unwrap_or_else(|_| address.to_owned());
-        if !has_port(&address) {
-            return Err(ServeError::Address(address));
-        }
+    /// [`ServeError::Door`] when it is taken or not this computer's.
+    pub fn listen(TcpPlace(address): &TcpPlace) -> Result<Self, ServeError> {
         let listen = || {
-            let listener = TcpListener::bind(&address)?;
+            let listener = TcpListener::bind(address)?;
             listener.set_nonblocking(true)?;
             Ok(Self { listener, patience: PATIENCE })
         };

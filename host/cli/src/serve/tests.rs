@@ -102,7 +102,7 @@ fn a_host_that_was_silent_while_nobody_was_served_holds_the_board_no_longer() {
 
 /// What the port sends to a host while another one is connected that has sent `first`.
 fn told_beside(first: &[u8], patience: Patience) -> Vec<u8> {
-    let mut port = Port::listen("127.0.0.1:0").unwrap();
+    let mut port = Port::listen(&"127.0.0.1:0".parse().unwrap()).unwrap();
     port.patience = patience;
     let address = port.address().unwrap();
     let done = Arc::new(AtomicBool::new(false));
