@@ -77,20 +77,14 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
         "a bit of a kernel word is flipped",
         &[
             Parameter::new("node", Range::Whole(0, NODES as i64 - 1), Some("16"), "the word's node"),
-            Parameter::new(
-                "weight",
-                Range::Words(&["g0", "r1", "g4", "r5", "g6"]),
-                Some("g4"),
-                "the word's weight",
-            ),
+            Parameter::new("weight", Range::Words(&Weight::NAMES), Some("g4"), "the word's weight"),
             Parameter::new("bit", Range::Whole(0, 15), Some("12"), "the bit of the word"),
             HIDDEN,
         ],
         |values| {
             Ok(BoardFault::KernelWord {
                 node: values.whole("node")?,
-                weight: values
-                    .choice("weight", &[Weight::G0, Weight::R1, Weight::G4, Weight::R5, Weight::G6])?,
+                weight: values.choice("weight", &Weight::ALL)?,
                 bit: values.whole("bit")?,
                 hidden: values.choice("hidden", &[false, true])?,
             })

@@ -35,7 +35,7 @@ pub use class::Class;
 pub use closed_link::ClosedLink;
 pub use error::OpenError;
 pub use line_errors::LineErrors;
-pub use open::{check, fault, open, recording, recording_file, replay, written_file};
+pub use open::{WRITTEN_FILE, check, fault, open, recording, recording_file, replay, written_file};
 pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
 pub(crate) use replay::ReplayLink;
 pub use serial::{Holder, SerialBoard, SerialError, holders};

@@ -152,6 +152,9 @@ pub fn recording_file(target: &Target) -> Option<&Path> {
     target.address.as_deref().filter(|_| target.kind == "replay").map(Path::new)
 }
 
+/// How a target names the file that its board writes. Only a simulated board does.
+pub const WRITTEN_FILE: &str = "trace=FILE";
+
 /// The file that the board of `target` writes, if the target names one. It is made when the board is opened, never through a
 /// link and never over a file.
 #[must_use]

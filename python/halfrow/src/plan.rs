@@ -163,17 +163,13 @@ impl Options<'_> {
     }
 
     fn options(&mut self, files: Vec<Input>) -> PyResult<RunOptions> {
-        let mut retry_limit = RetryLimit::default();
-        if let Some(percent) = self.retry_limit {
-            if !(0.0..=100.0).contains(&percent) {
-                return Err(errors::wrong_value("retry_limit is no percentage; give 0 to 100"));
-            }
-            retry_limit.share = percent / 100.0;
+        if self.retry_limit.is_some_and(|percent| !(0.0..=100.0).contains(&percent)) {
+            return Err(errors::wrong_value("retry_limit is no percentage; give 0 to 100"));
         }
         let arguments = std::mem::take(&mut self.arguments);
         let hashes = files.into_iter().map(FileHash::from).collect();
         Ok(RunOptions {
-            retry_limit,
+            retry_limit: self.retry_limit.map(RetryLimit::of_percent).unwrap_or_default(),
             reconnect: choices::seconds("reconnect", self.reconnect)?,
             take_over: self.take_over,
             require_hardware: self.require_hardware,

@@ -41,7 +41,7 @@ pub(crate) fn verify(
         .reads(inputs)
         .reads_kernel(kernel.as_deref().map(Path::as_os_str))
         .reads(link::recording_file(&target))
-        .writes_claimed("trace=FILE", link::written_file(&target))
+        .writes_claimed(link::WRITTEN_FILE, link::written_file(&target))
         .writes_claimed("record", asked.record.as_deref())
         .writes_report("report", asked.report.as_deref());
     files.check().map_err(errors::input)?;

@@ -21,6 +21,18 @@ pub enum Weight {
     G6,
 }
 
+impl Weight {
+    /// All of them, in the order of [`Node`]'s fields.
+    pub(crate) const ALL: [Self; NODE_WEIGHTS] = [Self::G0, Self::R1, Self::G4, Self::R5, Self::G6];
+
+    /// Their names, in the same order.
+    pub(crate) const NAMES: [&str; NODE_WEIGHTS] = ["g0", "r1", "g4", "r5", "g6"];
+
+    pub(crate) fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
 /// The stored weights at one kernel position, signed, in units of 2^-14.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Node {

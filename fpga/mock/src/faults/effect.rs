@@ -59,11 +59,10 @@ impl BoardFault {
             {
                 Err(OptionError::NoTap { tap })
             }
-            Self::KernelWord { weight: Weight::G0, .. } if build.taps == TapCount::Five => {
-                Err(OptionError::NoWeight { weight: "g0" })
-            }
-            Self::KernelWord { weight: Weight::G6, .. } if build.taps == TapCount::Five => {
-                Err(OptionError::NoWeight { weight: "g6" })
+            Self::KernelWord { weight: weight @ (Weight::G0 | Weight::G6), .. }
+                if build.taps == TapCount::Five =>
+            {
+                Err(OptionError::NoWeight { weight: weight.name() })
             }
             Self::WrongLatencyClaim => build.check_longer_latency(),
             Self::StaleTable { .. } | Self::LateSwap if build.table_banks == 1 => {

@@ -42,9 +42,6 @@ pub(crate) struct BoardArguments {
     pub(crate) take_over: bool,
 }
 
-/// What names the file that a board writes. Only a simulated one does.
-pub(crate) const IN_TARGET: &str = "trace=FILE";
-
 /// The end of the help of most commands: what they do if no board is named.
 pub(crate) const MOCK: &str = " [default: mock]";
 
@@ -129,7 +126,17 @@ impl BoardArguments {
         let target = self.named(settings)?;
         Ok(Files::new(overwrite)
             .reads(link::recording_file(&target))
-            .writes_claimed(IN_TARGET, link::written_file(&target)))
+            .writes_claimed(link::WRITTEN_FILE, link::written_file(&target)))
+    }
+
+    /// Like [`Self::files`], for a call that only asks a board if `is_asked`.
+    pub(crate) fn files_if(
+        &self,
+        is_asked: bool,
+        overwrite: bool,
+        settings: &Settings,
+    ) -> Result<Files, Failure> {
+        if is_asked { self.files(overwrite, settings) } else { Ok(Files::new(overwrite)) }
     }
 
     /// The target that is named: a board, or a pool of some kind; by default the mock.
@@ -203,10 +210,6 @@ impl BoardArguments {
     }
 
     pub(crate) fn retry_limit(&self, settings: &Settings) -> RetryLimit {
-        let limit = RetryLimit::default();
-        match self.retry_limit.or(settings.retry_limit) {
-            Some(percent) => RetryLimit { share: percent / 100.0, ..limit },
-            None => limit,
-        }
+        self.retry_limit.or(settings.retry_limit).map(RetryLimit::of_percent).unwrap_or_default()
     }
 }

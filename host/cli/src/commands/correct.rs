@@ -23,7 +23,6 @@ use crate::document::tell_result;
 use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::settings::Settings;
-use halfrow::call::Files;
 use halfrow::frames::{self, Format, Orientation, ReadOptions, Scene, WriteError, parallel, preview};
 use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
@@ -79,12 +78,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     arguments.refuse_void(&inputs, settings)?;
     let places = Places::of(&inputs, &arguments.wanted()).map_err(Failure::call)?;
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
-    let files = if arguments.model {
-        Files::new(arguments.overwrite)
-    } else {
-        arguments.board.files(arguments.overwrite, settings)?
-    };
-    let files = files
+    let files = arguments
+        .board
+        .files_if(!arguments.model, arguments.overwrite, settings)?
         .reads(&context.settings_file)
         .reads(arguments.tables.path(settings))
         .reads(arguments.lens.file())

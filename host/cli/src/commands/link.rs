@@ -179,7 +179,7 @@ mod tests {
             bound: 1.0,
         };
         for percent in [0.0, 0.1, 2.345, 7.0, 14.0, 28.0, 55.0, 100.0] {
-            let limit = RetryLimit { share: percent / 100.0, fixed: 16 };
+            let limit = RetryLimit::of_percent(percent);
             let said = enough(&errors, limit, false);
             assert!(said.ends_with(&format!(", the limit is {percent} % and 16")), "{said}");
         }

@@ -63,11 +63,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let items = arguments.items();
     let through_board = arguments.board.is_named(&context.settings);
     let uses_board = items.iter().any(|item| item.uses_board(through_board));
-    let files = if uses_board {
-        arguments.board.files(arguments.overwrite, &context.settings)?
-    } else {
-        Files::new(arguments.overwrite)
-    };
+    let files = arguments.board.files_if(uses_board, arguments.overwrite, &context.settings)?;
     arguments.check(&items, uses_board, files, context).map_err(Failure::call)?;
     let photographs = arguments.photographs(&items);
     let photographs = photographs.map_err(|error| Failure::call(error).in_value_of("--images"))?;

@@ -88,6 +88,12 @@ impl RetryLimit {
     /// No limit, for when nothing is judged.
     pub const NONE: Self = Self { fixed: u64::MAX, share: 0.0 };
 
+    /// The default's fixed part, and `percent` (0 to 100) of the packets sent.
+    #[must_use]
+    pub fn of_percent(percent: f64) -> Self {
+        Self { share: percent / 100.0, ..Self::default() }
+    }
+
     /// The most retries allowed among `packets` packets.
     #[must_use]
     pub fn of(self, packets: u64) -> u64 {
