@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use halfrow::board::{Board, NumberedFrame, OpenOptions, ReturnedRow, RowTiming, RowTraffic};
+use halfrow::board::{Board, Datapath, NumberedFrame, OpenOptions, ReturnedRow, RowTiming, RowTraffic};
 use halfrow::link::Link;
 use halfrow_model::{Frame, Kernel, TableSet};
 
@@ -56,7 +56,8 @@ impl WholeBoard {
         };
         let settings = &case.settings;
         let timing = RowTiming { blanking: settings.blanking, gap_seed: settings.gap_seed };
-        self.board.configure(tables.geometry(), timing).unwrap();
+        // The settings are drawn for both frames, whatever tables they have.
+        self.board.configure(tables.geometry(), timing, Datapath::RowFactors).unwrap();
         let mut played = Played::default();
         self.commit(tables, kernel, 0);
         self.stream(&[first], &mut played);

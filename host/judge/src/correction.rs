@@ -8,6 +8,7 @@ use halfrow_model::{Frame, Kernel, TableSet};
 
 use crate::board::{Board, BoardError, NumberedFrame, ReturnedRow, RowTiming, RowTraffic};
 use crate::progress::Progress;
+use crate::tables::datapath_of;
 
 /// What a board corrects frames with.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +24,7 @@ pub struct Correction<'a> {
 }
 
 impl Correction<'_> {
-    /// Uploads tables and kernel, then streams `inputs` with the board's least blanking. Hands the samples of each corrected
+    /// Uploads tables and kernel, then streams `inputs` with the least blanking that the board needs for them. Hands the samples of each corrected
     /// frame, row after row, to `take`, in the order of the inputs, until `take` breaks. The samples of a broken board can exceed
     /// the depth. Returns the least and the most pixel clocks that a row's first and last samples took.
     ///
@@ -37,7 +38,7 @@ impl Correction<'_> {
         progress: &dyn Progress,
     ) -> Result<RangeInclusive<u16>, BoardError> {
         board.start_afresh()?;
-        board.configure(self.tables.geometry(), RowTiming::default())?;
+        board.configure(self.tables.geometry(), RowTiming::default(), datapath_of(self.tables))?;
         board.upload(self.tables, self.kernel)?;
         board.commit(self.tables, self.kernel, self.first_frame, self.generation)?;
         let mut collect = Collect {

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use halfrow::board::deadlines::RetryLimit;
-use halfrow::board::{Board, BoardError, OpenOptions, RowTiming};
+use halfrow::board::{Board, BoardError, Datapath, OpenOptions, RowTiming};
 use halfrow::link::Link;
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
@@ -27,7 +27,7 @@ fn opened(link: Box<dyn Link>, retry_limit: RetryLimit) -> Board {
 }
 
 fn configure(board: &mut Board) -> Result<(), BoardError> {
-    board.configure(System::TINY.plan().tables.geometry(), RowTiming::default())
+    board.configure(System::TINY.plan().tables.geometry(), RowTiming::default(), Datapath::RowFactors)
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use halfrow::board::{Board, NumberedFrame, OpenOptions, ReturnedRow, RowTiming, RowTraffic, Stop};
+use halfrow::board::{Board, Datapath, NumberedFrame, OpenOptions, ReturnedRow, RowTiming, RowTraffic, Stop};
 use halfrow::link::{Candidate, Link, LinkError};
 use halfrow::progress::Silent;
 use halfrow::result::Report;
@@ -69,7 +69,7 @@ fn leave(link: Shared, tables: &TableSet, kernel: &Kernel, generation: u8) {
     let samples = vec![0; geometry.width() * geometry.height()];
     let frame = Frame::new(geometry.width(), geometry.depth(), Phase::Grbg, samples).unwrap();
     Board::with(Box::new(link), &OpenOptions::default(), |board| {
-        board.configure(geometry, RowTiming::default()).unwrap();
+        board.configure(geometry, RowTiming::default(), Datapath::RowFactors).unwrap();
         board.upload(tables, kernel).unwrap();
         board.commit(tables, kernel, 0, generation).unwrap();
         board.stream(&mut One(Some(NumberedFrame { number: 0, frame: Arc::new(frame) }))).unwrap();

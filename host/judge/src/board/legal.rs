@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use halfrow_model::{MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
 use halfrow_protocol::message::Grids;
 
-use super::{BoardError, Capabilities, Datapath};
+use super::{BoardError, Bursts, Capabilities, Datapath};
 
 /// The legal values of a capability.
 struct Limit {
@@ -34,6 +34,33 @@ pub(crate) const LEAST_ENTRIES: u16 = 2048;
 /// The grids that a board takes; none if they are of an unknown datapath.
 pub(crate) fn grids(board: &Capabilities) -> Option<Grids> {
     board.grids.filter(|grids| grids.further_datapath == Datapath::Grids.id())
+}
+
+/// The fewest pixel clocks between two rows of `width` samples that `datapath` corrects.
+pub(crate) fn row_blanking(board: &Capabilities, width: usize, datapath: Datapath) -> u16 {
+    board.least_blanking.max(grid_blanking(board, width, datapath))
+}
+
+/// The fewest pixel clocks between two frames of a burst of such rows: the last row of a frame and the first of the next follow
+/// each other too.
+pub(crate) fn frame_blanking(board: &Capabilities, bursts: Bursts, width: usize, datapath: Datapath) -> u16 {
+    bursts.least_frame_blanking.max(grid_blanking(board, width, datapath))
+}
+
+/// What narrow rows of a grid need in addition.
+fn grid_blanking(board: &Capabilities, width: usize, datapath: Datapath) -> u16 {
+    match datapath {
+        Datapath::RowFactors => 0,
+        Datapath::Grids => grids(board)
+            .filter(|grids| width < grids.grid_width.into())
+            .map_or(0, |grids| grids.grid_blanking.into()),
+    }
+}
+
+/// Pixel clocks from the first sample of a frame of a burst to that of the next (AT-SPEED.md, *Time*).
+pub(crate) fn frame_clocks((width, height): (usize, usize), blanking: u16, between: u16) -> u64 {
+    let (width, height) = (width as u64, height as u64);
+    width * height + u64::from(blanking) * height.saturating_sub(1) + u64::from(between)
 }
 
 /// Of datapath 1, and of datapath 2 in addition.

@@ -41,7 +41,9 @@ pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub(crate) use counted::Miscount;
 pub use error::{BoardError, OpenFailed};
-pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
+pub(crate) use legal::{
+    LEAST_ENTRIES, MAX_LATENCY, frame_blanking, frame_clocks, grids, possible, row_blanking,
+};
 pub(crate) use nature::Shown;
 pub use open_options::{OpenOptions, WhenHeld};
 pub use received::{Had, Received};
@@ -61,7 +63,7 @@ pub use halfrow_protocol::message::{
 /// When the core is fed samples. The default is as soon as the board can take them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RowTiming {
-    /// Pixel clocks between two rows. A board that needs more uses its minimum.
+    /// Pixel clocks between two rows. For a board that needs more they are as many as it needs.
     pub blanking: u16,
     /// Seed of the gaps in rows and between them; 0 for none.
     pub gap_seed: u32,
@@ -224,16 +226,23 @@ impl Board {
         Ok((same, self.conversation.since(begun)))
     }
 
-    /// Sets geometry and timing.
+    /// Sets geometry and timing, for rows that `datapath` corrects. If different tables take turns, it is [`Datapath::Grids`] as
+    /// soon as one of them is a grid, whose rows may have to be further apart.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
-    pub fn configure(&mut self, geometry: &Geometry, timing: RowTiming) -> Result<(), BoardError> {
+    pub fn configure(
+        &mut self,
+        geometry: &Geometry,
+        timing: RowTiming,
+        datapath: Datapath,
+    ) -> Result<(), BoardError> {
+        let least = row_blanking(&self.capabilities, geometry.width(), datapath);
         let configure = Request::Configure(Configuration {
             width: geometry.width() as u16,
             height: geometry.height() as u16,
             centre2: geometry.centre2() as u16,
-            blanking: timing.blanking.max(self.capabilities.least_blanking),
+            blanking: timing.blanking.max(least),
             gap_seed: timing.gap_seed,
             bits: geometry.depth().bits() as u8,
         });

@@ -8,6 +8,7 @@ use rand_core::Rng;
 
 use super::{LinkTestError, Test, Throughput};
 use crate::board::{Board, BoardError, NumberedFrame, RowTiming, Unjudged};
+use crate::tables::datapath_of;
 
 /// Rows of a frame. After the last one the core runs empty, which costs half a row.
 const HEIGHT: u16 = 64;
@@ -39,7 +40,7 @@ impl Test<'_> {
     }
 
     fn set(&mut self, tables: &TableSet) -> Result<(), BoardError> {
-        self.board.configure(tables.geometry(), RowTiming::default())?;
+        self.board.configure(tables.geometry(), RowTiming::default(), datapath_of(tables))?;
         let kernel = Kernel::from(Interpolant::Hermite);
         self.board.upload(tables, &kernel)?;
         self.board.commit(tables, &kernel, 0, 1)

@@ -57,7 +57,8 @@ pub struct GridsReport {
     /// T: the entries that a bank holds.
     pub entries: u16,
     /// Fewest pixel clocks between rows of a grid that are narrower than `width`.
-    pub least_blanking: u8,
+    #[serde(rename = "least_blanking")]
+    pub grid_blanking: u8,
     /// The width in columns from which rows of a grid need no more blanking than others.
     pub width: u16,
 }
@@ -93,7 +94,7 @@ impl GridsReport {
     fn text(&self) -> String {
         format!(
             "at most {} entries; {} pixel clocks between rows of less than {} columns",
-            self.entries, self.least_blanking, self.width
+            self.entries, self.grid_blanking, self.width
         )
     }
 }
@@ -124,7 +125,7 @@ impl Identity {
             entered: capabilities.entered,
             grids: grids(capabilities).map(|of| GridsReport {
                 entries: of.entries,
-                least_blanking: of.grid_blanking,
+                grid_blanking: of.grid_blanking,
                 width: of.grid_width,
             }),
         }

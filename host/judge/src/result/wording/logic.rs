@@ -158,10 +158,10 @@ pub(super) fn least_blanking(NamedBlanking { named, right }: NamedBlanking) -> W
     let pause = count(named, "pixel clock");
     Words {
         part: "blanking",
-        place: format!("a pause of {pause} between two rows, which the board names as its least_blanking"),
+        place: format!("a pause of {pause} between two rows, which the board names as the least"),
         defect: format!("rows are wrong after such a pause, and right after one of {}", count(right, "pixel clock")),
         designer: "Check how many pixel clocks the datapath needs from one row to the next, and name so many in CAPABILITIES \
-                   (least_blanking)."
+                   (least_blanking, for narrow rows of a grid grid_blanking)."
             .to_owned(),
         technician: LOGIC,
     }

@@ -7,7 +7,9 @@ use halfrow_model::{BitDepth, Content, Geometry, MIN_WIDTH};
 use halfrow_protocol::message::{Burst, BurstMode};
 
 use super::price::clock_hz;
-use crate::board::{Bursts, Capabilities};
+use crate::board::{Bursts, Capabilities, Datapath, frame_blanking, frame_clocks, row_blanking};
+use crate::run::Generation;
+use crate::tables::datapath_of;
 
 /// The pixel clock, in hertz, that is assumed for a board that names none: that of the paper's sensor.
 pub(in crate::run) const USUAL_CLOCK: u32 = 96_000_000;
@@ -34,6 +36,8 @@ pub(super) struct BurstPlan {
     seed: u32,
     first_frame: u16,
     bursts: Bursts,
+    /// Pixel clocks between two frames.
+    frame_blanking: u16,
     /// Pixel clocks from the first sample of one frame to that of the next.
     clocks: u64,
     clock_hz: u32,
@@ -47,25 +51,26 @@ pub(super) struct BurstPlan {
 
 impl BurstPlan {
     /// A burst with no frames yet, whose frames have the size of `geometry` and whose seed is draw number `draw` from the
-    /// run's seed.
+    /// run's seed. The greater `datapath` of the tables in both banks decides how far its rows are apart.
     pub(super) fn new(
         geometry: &Geometry,
         seed: u64,
         capabilities: &Capabilities,
         bursts: Bursts,
-        mode: BurstMode,
-        draw: u32,
+        (mode, draw): (BurstMode, u32),
+        datapath: Datapath,
     ) -> Self {
         let (width, height) = (geometry.width(), geometry.height());
-        let (blanking, between) = (capabilities.least_blanking, bursts.least_frame_blanking);
-        let row = width as u64 + u64::from(blanking);
+        let blanking = row_blanking(capabilities, width, datapath);
+        let frame_blanking = frame_blanking(capabilities, bursts, width, datapath);
         Self {
             frames: 0,
             mode,
             seed: telling_seed((seed.wrapping_add(1 + u64::from(draw)).wrapping_mul(GOLDEN) >> 32) as u32),
             first_frame: 0,
             bursts,
-            clocks: row * height as u64 - u64::from(blanking) + u64::from(between),
+            frame_blanking,
+            clocks: frame_clocks((width, height), blanking, frame_blanking),
             clock_hz: clock_hz(capabilities),
             samples: (width * height) as u32,
             rows: height as u16,
@@ -85,7 +90,7 @@ impl BurstPlan {
             frames: self.frames,
             seed: self.seed,
             first_frame: self.first_frame,
-            frame_blanking: self.bursts.least_frame_blanking,
+            frame_blanking: self.frame_blanking,
             mode: self.mode,
         }
     }
@@ -149,6 +154,12 @@ impl BurstPlan {
     }
 }
 
+/// The datapath for which the rows of a burst must be far enough apart that is made with `tables` by turns.
+pub(super) fn datapath_of_all(tables: &[Generation]) -> Datapath {
+    let has_grid = tables.iter().any(|generation| datapath_of(&generation.tables) == Datapath::Grids);
+    if has_grid { Datapath::Grids } else { Datapath::RowFactors }
+}
+
 /// The content of frame `n` of `burst` (AT-SPEED.md).
 pub(in crate::run) fn content(burst: &Burst, n: u32) -> Content {
     let own = matches!(burst.mode, BurstMode::Fresh | BurstMode::Alternating);
@@ -178,6 +189,7 @@ mod tests {
             seed: 1,
             first_frame: 0xfffe,
             bursts: Bursts { content: 1, records: 64, least_frame_blanking: 100, trap: true },
+            frame_blanking: 100,
             clocks: 1920 * 1080 + 100,
             clock_hz,
             samples: 1920 * 1080,

@@ -165,7 +165,8 @@ impl Run<'_> {
         self.named_clock().map(|clock_hz| NotExercised::UnseenClock { clock_hz })
     }
 
-    /// The named clock as not exercised, if it was seen to be another one and that is not the board's fault, or not certain.
+    /// The named clock as not exercised, if it was seen to be another one and that is not the board's fault, or not certain, or
+    /// if the board does not say whose it is.
     pub(super) fn clock_not_exercised(&self, seen: ClockSeen) -> Option<NotExercised> {
         let clock_hz = self.board.capabilities.clock_hz;
         (!seen.allows(clock_hz)).then_some(NotExercised::NamedClock { clock_hz, seen })
@@ -178,7 +179,7 @@ mod tests {
     use halfrow_protocol::message::{BurstMode, FrameRecord};
 
     use super::*;
-    use crate::board::Capabilities;
+    use crate::board::{Capabilities, Datapath};
     use crate::run::{Plan, usual_capabilities};
 
     /// 64 x 8 samples and 8 clocks, so 520 clocks a frame, at 10 kHz.
@@ -188,7 +189,14 @@ mod tests {
         let tables = halfrow_model::TableSet::from_lens(geometry, &lens, None).unwrap();
         let plan = Plan::new(tables, halfrow_model::Interpolant::Hermite.into());
         let board = Capabilities { clock_hz: 10_000, ..usual_capabilities(&plan, BoardNature::Hardware) };
-        BurstPlan::new(&geometry, 1, &board, board.bursts.unwrap(), BurstMode::Fresh, 0)
+        BurstPlan::new(
+            &geometry,
+            1,
+            &board,
+            board.bursts.unwrap(),
+            (BurstMode::Fresh, 0),
+            Datapath::RowFactors,
+        )
     }
 
     /// What is seen of a burst that began within the first 10 ms. Each look is: the records that come, how many of them

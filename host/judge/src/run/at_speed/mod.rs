@@ -29,11 +29,12 @@ use super::frames::observations::Observations;
 use super::plan::parts::Part;
 use super::plan::{AtSpeed, DECOY, Generation, JUDGED, Segment};
 use super::steps::Run;
-use crate::board::{Bank, Bursts, RowTiming};
+use crate::board::{Bank, Bursts, Datapath, RowTiming};
 use crate::progress::Step;
 use crate::reference::correct;
 use crate::result::{CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst, NotExercised};
-use burst::BurstPlan;
+use crate::tables::datapath_of;
+use burst::{BurstPlan, datapath_of_all};
 pub(super) use burst::{USUAL_CLOCK, content};
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
 pub(super) use repeated::MadeRows;
@@ -107,7 +108,7 @@ impl Run<'_> {
     }
 
     fn judge_burst(&mut self, bursts: Bursts, seen: &mut Observations) -> Result<Exercised, End> {
-        self.set(self.plan.tables.geometry())?;
+        self.set(self.plan.tables.geometry(), datapath_of(&self.plan.tables))?;
         let tables = self.tables_at_speed(seen)?;
         let plan = self.burst_plan(bursts, &tables);
         let watched = self.judge_frames(&plan, &tables)?;
@@ -127,8 +128,8 @@ impl Run<'_> {
         Ok(exercised)
     }
 
-    fn set(&mut self, geometry: &Geometry) -> Result<(), End> {
-        self.board.configure(geometry, RowTiming::default()).during(CheckName::AtSpeed)
+    fn set(&mut self, geometry: &Geometry, datapath: Datapath) -> Result<(), End> {
+        self.board.configure(geometry, RowTiming::default(), datapath).during(CheckName::AtSpeed)
     }
 
     /// Has the board make the burst. A wrong frame or a wrong count ends the run.
@@ -173,8 +174,8 @@ impl Run<'_> {
                 self.plan.seed,
                 &capabilities,
                 bursts,
-                mode,
-                FIRST_CORNER + place,
+                (mode, FIRST_CORNER + place),
+                datapath_of_all(tables),
             );
             plan.frames = 2;
             let watched = self.judge_frames(&plan, tables).map_err(in_corner)?;
@@ -200,19 +201,20 @@ impl Run<'_> {
 
     /// Makes the first of `tables` active, and puts the second into the other bank.
     fn upload_corner(&mut self, tables: &[Generation]) -> Result<(), End> {
+        let datapath = datapath_of_all(tables);
         for (place, generation) in tables.iter().enumerate() {
-            self.set(generation.tables.geometry())?;
+            self.set(generation.tables.geometry(), datapath)?;
             self.board.upload(&generation.tables, &generation.kernel).during(CheckName::AtSpeed)?;
             self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
             // In a frame of another height the entries of a grid are at other places.
             let rows = if generation.tables.shape().is_some() { usize::MAX } else { 1 };
             let first_rows = generation.upper(rows.min(generation.tables.geometry().height()));
             if let Some(first_rows) = first_rows.filter(|_| place == 0) {
-                self.set(first_rows.tables.geometry())?;
+                self.set(first_rows.tables.geometry(), datapath)?;
                 self.activate(&first_rows)?;
             }
         }
-        tables.first().map_or(Ok(()), |active| self.set(active.tables.geometry()))
+        tables.first().map_or(Ok(()), |active| self.set(active.tables.geometry(), datapath))
     }
 
     /// The tables with which frames are made by turns: the active ones, which have the factors and the kernel to judge

@@ -5,11 +5,12 @@ use std::time::Duration;
 use halfrow_model::Geometry;
 use halfrow_protocol::message::{BurstMode, FrameRecord};
 
-use super::burst::{BurstPlan, USUAL_CLOCK};
+use super::burst::{BurstPlan, USUAL_CLOCK, datapath_of_all};
 use super::{FEW_AT_SPEED, USUAL, corners};
-use crate::board::{BoardNature, Bursts, Capabilities};
+use crate::board::{BoardNature, Bursts, Capabilities, Datapath, row_blanking};
 use crate::run::plan::prices::Prices;
 use crate::run::{AtSpeed, Generation, Plan};
+use crate::tables::datapath_of;
 
 /// The payload of a request for records, and of its reply without the records.
 const LOOK: (usize, usize) = (4, 10);
@@ -25,7 +26,7 @@ pub(super) fn usual_burst(
     bursts: Bursts,
     mode: BurstMode,
 ) -> BurstPlan {
-    let mut burst = BurstPlan::new(plan.tables.geometry(), plan.seed, capabilities, bursts, mode, 0);
+    let mut burst = burst_of(plan, capabilities, bursts, (mode, 0));
     burst.frames = match plan.at_speed {
         AtSpeed::Off => burst.frames_in(Duration::ZERO),
         AtSpeed::For(time) => burst.frames_in(time),
@@ -35,6 +36,18 @@ pub(super) fn usual_burst(
         AtSpeed::Usual | AtSpeed::Soak(_) => FEW_AT_SPEED,
     };
     burst
+}
+
+/// A burst with no frames yet of the tables of `plan`.
+pub(super) fn burst_of(
+    plan: &Plan,
+    capabilities: &Capabilities,
+    bursts: Bursts,
+    mode_and_draw: (BurstMode, u32),
+) -> BurstPlan {
+    let tables = &plan.tables;
+    let datapath = datapath_of(tables);
+    BurstPlan::new(tables.geometry(), plan.seed, capabilities, bursts, mode_and_draw, datapath)
 }
 
 /// The pixel clock of a board, in hertz; the usual one if it names none.
@@ -51,7 +64,9 @@ pub(in crate::run) fn most_frames(prices: &Prices<'_>) -> usize {
 /// The price of a usual burst of `frames` frames: settings, the tables of the other bank, and every look at the records.
 pub(in crate::run) fn price_of_frames(prices: &Prices<'_>, frames: u32) -> f64 {
     let other_bank = if prices.capabilities.table_banks > 1 { prices.upload() } else { 0.0 };
-    prices.short_request() + other_bank + watching(prices, prices.plan.tables.geometry(), frames)
+    prices.short_request()
+        + other_bank
+        + watching(prices, prices.plan.tables.geometry(), frames, datapath_of(&prices.plan.tables))
 }
 
 /// The price of all corners: tables for each bank, a row (with a grid, a frame) that brings the first into effect, and
@@ -63,16 +78,20 @@ pub(in crate::run) fn price_of_corners(prices: &Prices<'_>) -> f64 {
         let upload = |own: &Generation| prices.short_request() + prices.upload_of(own.tables.entries().len());
         let uploads = tables.iter().map(upload).sum::<f64>();
         let rows = if active.shape().is_some() { geometry.height() } else { 1 };
-        let activated = prices.short_request() + prices.commit() + prices.rows(rows, geometry.width(), 0);
-        uploads + activated + prices.short_request() + watching(prices, geometry, 2)
+        let datapath = datapath_of_all(tables);
+        let between = row_blanking(prices.capabilities, geometry.width(), datapath_of(active)).into();
+        let activated =
+            prices.short_request() + prices.commit() + prices.rows(rows, geometry.width(), between);
+        uploads + activated + prices.short_request() + watching(prices, geometry, 2, datapath)
     };
     corners::corners(prices.capabilities, prices.plan.seed).iter().map(corner).sum()
 }
 
 /// The price of a burst of `frames` frames, from the request on. Each look takes the records that exist by then, if any.
-fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
+fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32, datapath: Datapath) -> f64 {
     let Some(bursts) = prices.capabilities.bursts else { return 0.0 };
-    let burst = BurstPlan::new(geometry, prices.plan.seed, prices.capabilities, bursts, BurstMode::Fresh, 0);
+    let (seed, mode_and_draw) = (prices.plan.seed, (BurstMode::Fresh, 0));
+    let burst = BurstPlan::new(geometry, seed, prices.capabilities, bursts, mode_and_draw, datapath);
     let (frame, look) = (burst.seconds(1), |records| {
         prices.rates.request(LOOK.0, LOOK.1 + records as usize * FrameRecord::BYTES)
     });
@@ -124,7 +143,7 @@ mod tests {
             let capabilities = Capabilities { clock_hz, ..usual.clone() };
             let rates = Rates { bytes_per_second: f64::INFINITY, round_trip: 0.0 };
             let prices = Prices::new(&plan, &capabilities, rates);
-            (1000.0 * watching(&prices, &geometry, frames)).round()
+            (1000.0 * watching(&prices, &geometry, frames, Datapath::RowFactors)).round()
         };
         assert_eq!([1, 2, 3].map(|frames| seconds(1, frames)), [520e3, 1040e3, 1560e3]);
         // 52 s, 104 s: the first look after these.

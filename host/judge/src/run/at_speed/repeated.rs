@@ -18,8 +18,8 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
-    Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, KeptRow, Problem, Repetition,
-    Streamed, Suspect,
+    Account, CheckName, Defect, Evidence, Finding, FrameReport, KeptRow, Problem, Repetition, Streamed,
+    Suspect,
 };
 use crate::run::findings::{During, End};
 use crate::run::frames::kept::as_found;
@@ -248,7 +248,7 @@ impl Run<'_> {
             sha256: String::new(),
             phase: self.plan.phase,
             generation: *number,
-            timing: FrameTiming::LeastBlanking { clocks: self.board.capabilities.least_blanking },
+            timing: self.least_blanking(tables),
             variation: None,
             first_rows: None,
             rows: tables.geometry().height(),

@@ -302,7 +302,7 @@ mod tests {
     /// One factor for all rows separates no two entries, and 4,096 of them have twelve address lines.
     #[test]
     fn the_memory_of_a_grid_has_lines_beyond_those_of_the_rows() {
-        let grids = GridsReport { entries: 4096, least_blanking: 32, width: 192 };
+        let grids = GridsReport { entries: 4096, grid_blanking: 32, width: 192 };
         let roomy = Identity { grids: Some(grids), ..board(7) };
         let unmoved = generation(127, Interpolant::Hermite, |_| 1 << 24);
         let parts = not_exercised(&roomy, &[&unmoved], Shown::default());

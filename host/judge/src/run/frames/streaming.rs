@@ -2,17 +2,19 @@
 
 use std::sync::mpsc::Receiver;
 
+use halfrow_model::TableSet;
 use halfrow_protocol::message::RowPlace;
 
 use super::observations::Observations;
 use super::pauses::pauses;
 use super::prepared::{PrepareError, Prepared};
 use super::row_judge::{JudgeOptions, RowJudge};
-use crate::board::{BoardError, MAX_LATENCY, Misconduct};
+use crate::board::{BoardError, MAX_LATENCY, Misconduct, row_blanking};
 use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, Problem, RepeatedRow};
 use crate::run::findings::{During, End};
 use crate::run::plan::{SENSOR_BLANKING, Segment, Timing};
 use crate::run::steps::Run;
+use crate::tables::datapath_of;
 use crate::verdict::Cause;
 
 impl Run<'_> {
@@ -68,9 +70,15 @@ impl Run<'_> {
         }
     }
 
+    /// The timing of rows of `tables` that follow each other as closely as the board allows.
+    pub(in crate::run) fn least_blanking(&self, tables: &TableSet) -> FrameTiming {
+        let (width, datapath) = (tables.geometry().width(), datapath_of(tables));
+        FrameTiming::LeastBlanking { clocks: row_blanking(&self.board.capabilities, width, datapath) }
+    }
+
     fn timing(&self, timing: Timing) -> FrameTiming {
         match timing {
-            Timing::Least => FrameTiming::LeastBlanking { clocks: self.board.capabilities.least_blanking },
+            Timing::Least => self.least_blanking(&self.plan.tables),
             Timing::Sensor => FrameTiming::Blanking { clocks: SENSOR_BLANKING },
             Timing::Gaps(seed) => FrameTiming::Gaps { seed },
         }

@@ -6,6 +6,7 @@ use crate::result::{CheckName, Finding, Suspect};
 use crate::run::findings::{During, End};
 use crate::run::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
 use crate::run::steps::Run;
+use crate::tables::datapath_of;
 
 impl Run<'_> {
     /// Sets up the board for a segment, tables included.
@@ -21,7 +22,9 @@ impl Run<'_> {
             Timing::Sensor => RowTiming { blanking: SENSOR_BLANKING, ..RowTiming::default() },
             Timing::Gaps(gap_seed) => RowTiming { gap_seed, ..RowTiming::default() },
         };
-        self.board.configure(&segment.geometry, timing).during(CheckName::Upload)
+        // All tables of a plan are of one kind.
+        let datapath = datapath_of(&self.plan.tables);
+        self.board.configure(&segment.geometry, timing, datapath).during(CheckName::Upload)
     }
 
     /// Uploads and commits a generation, to be used from `first_frame` on, for frames of `rows` rows.

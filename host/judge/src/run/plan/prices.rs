@@ -11,8 +11,9 @@ use super::parts::{Part, Selection, parts_of};
 use super::patterns::patterns;
 use super::variations::Build;
 use super::{AtSpeed, Plan, SENSOR_BLANKING, Segment, Timing};
-use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table};
+use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table, row_blanking};
 use crate::run::{at_speed, rules};
+use crate::tables::datapath_of;
 
 /// The least payload that a row is priced at: between shorter rows the link stands still while they are acknowledged.
 const SMALL: usize = 300;
@@ -181,11 +182,12 @@ impl<'a> Prices<'a> {
     fn segment(&self, segment: &Segment) -> f64 {
         let rows = segment.rows();
         let width = segment.geometry.width();
+        let least = row_blanking(self.capabilities, width, datapath_of(&self.plan.tables));
         let between = match segment.timing {
-            Timing::Least => self.capabilities.least_blanking.into(),
-            Timing::Sensor => SENSOR_BLANKING.into(),
+            Timing::Least => least.into(),
+            Timing::Sensor => SENSOR_BLANKING.max(least).into(),
             // One clock in eight is off, and up to 15 are added between two rows.
-            Timing::Gaps(_) => usize::from(self.capabilities.least_blanking) + 15 + width.div_ceil(8),
+            Timing::Gaps(_) => usize::from(least) + 15 + width.div_ceil(8),
         };
         let before = if segment.is_varied() { self.read_back() } else { 0.0 };
         let tables = segment.commit.map_or(0.0, |_| self.upload() + self.commit());

@@ -10,7 +10,7 @@ use halfrow_protocol::message::{
 };
 
 use super::{FIRST_FACTOR, Rules, longer, of_board};
-use crate::board::{BoardError, Fetched};
+use crate::board::{BoardError, Fetched, frame_clocks};
 use crate::result::{Answer, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{clock_hz, content, signer};
@@ -184,9 +184,8 @@ impl Rules<'_, '_> {
 
     /// How long `frames` frames of the configured size take on the board's clock.
     pub(super) fn time_of(&self, frames: u32) -> Duration {
-        let blanking = usize::from(self.capabilities.least_blanking);
         let between = self.capabilities.bursts.map_or(0, |bursts| bursts.least_frame_blanking);
-        let clocks = self.height * (self.width + blanking) + usize::from(between);
+        let clocks = frame_clocks((self.width, self.height), self.capabilities.least_blanking, between);
         Duration::from_secs_f64(f64::from(frames) * clocks as f64 / f64::from(clock_hz(&self.capabilities)))
     }
 

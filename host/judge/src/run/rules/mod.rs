@@ -35,7 +35,7 @@ use super::findings::End;
 use super::plan::Segment;
 use super::plan::parts::of_height;
 use super::steps::Run;
-use crate::board::{BoardError, Capabilities, Given, Had, Response, RowTiming, Status};
+use crate::board::{BoardError, Capabilities, Datapath, Given, Had, Response, RowTiming, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
 use crate::result::{Answer, CheckName, Counter, Doubt, Finding, RowPart, Rule};
@@ -245,7 +245,7 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     fn set(&mut self, geometry: &Geometry, timing: RowTiming) -> Result<(), End> {
         (self.width, self.height) = (geometry.width(), geometry.height());
-        self.run.board.configure(geometry, timing).map_err(of_board)
+        self.run.board.configure(geometry, timing, Datapath::RowFactors).map_err(of_board)
     }
 
     fn drop_rows(&mut self) -> Result<(), End> {

@@ -8,9 +8,9 @@ use std::time::Duration;
 
 use halfrow_protocol::message::BurstMode;
 
-use super::NONE;
 use super::burst::{BurstPlan, LONGEST_LOOK};
 use super::watched::{BurstSeen, EndsEarly};
+use super::{NONE, price};
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::{Event, Step};
 use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength};
@@ -19,6 +19,7 @@ use crate::run::findings::{During, End};
 use crate::run::plan::{DECOY, Generation, JUDGED, Segment};
 use crate::run::sessions::second_look::{LOOKS, unasked};
 use crate::run::steps::Run;
+use crate::tables::datapath_of;
 use crate::verdict::Cause;
 use account::{Account, LONGEST_BURST, counted};
 use played::Played;
@@ -84,8 +85,7 @@ impl Run<'_> {
         let capabilities = &self.board.capabilities;
         let has_decoy = self.generations.iter().any(|generation| generation.number == DECOY);
         let changes = has_decoy && capabilities.table_banks > 1;
-        let (geometry, seed) = (self.plan.tables.geometry(), self.plan.seed);
-        let plan = BurstPlan::new(geometry, seed, capabilities, bursts, BurstMode::Fresh, 0);
+        let plan = price::burst_of(self.plan, capabilities, bursts, (BurstMode::Fresh, 0));
         self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, ..NONE });
         Ok(Exercised { left: super::untested(changes, paused > 0), ..Exercised::default() })
     }
@@ -168,14 +168,7 @@ impl Run<'_> {
         }
         let tables = self.tables_of_burst(draw)?;
         let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-        let mut plan = BurstPlan::new(
-            self.plan.tables.geometry(),
-            self.plan.seed,
-            &self.board.capabilities,
-            bursts,
-            mode,
-            draw,
-        );
+        let mut plan = price::burst_of(self.plan, &self.board.capabilities, bursts, (mode, draw));
         let (now, earlier, progress) = (self.board.now(), self.sessions.earlier(), self.progress);
         let time = account.time_of_burst(earlier + now);
         plan.frames = account.frames_of_burst(&plan, time);
@@ -231,7 +224,9 @@ impl Run<'_> {
     /// in the other bank if there is one.
     fn tables_of_burst(&mut self, draw: u32) -> Result<Vec<Generation>, End> {
         self.sessions.start_afresh(self.board).during(CheckName::AtSpeed)?;
-        self.board.configure(self.plan.tables.geometry(), RowTiming::default()).during(CheckName::AtSpeed)?;
+        let tables = &self.plan.tables;
+        let configured = self.board.configure(tables.geometry(), RowTiming::default(), datapath_of(tables));
+        configured.during(CheckName::AtSpeed)?;
         let mut tables: Vec<_> =
             self.generations.iter().filter(|it| [DECOY, JUDGED].contains(&it.number)).cloned().collect();
         if (draw / 2).is_multiple_of(2) {
