@@ -19,6 +19,18 @@ pub enum BoardNature {
     Mock = 3,
 }
 
+/// Where a board's pixel clock comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum ClockSource {
+    /// The host: the board is a mock or a simulation.
+    Host = 0,
+    /// The sensor's PIXCLK.
+    Pixclk = 1,
+    /// A PLL.
+    Pll = 2,
+}
+
 /// The sample depths that a board supports: bit 0 for 8, bit 1 for 10, bit 2 for 12 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Depths(pub u8);
@@ -216,7 +228,7 @@ capabilities! {
     0x0c step_ports: u8,
     /// Ports through which it reads the kernel.
     0x0d kernel_ports: u8,
-    /// The source of the pixel clock: 0 the host's own, 1 the sensor's PIXCLK, 2 a PLL.
+    /// The code of a [`ClockSource`]. [`Self::source_of_clock`] returns it if it is known.
     0x0e clock_source: u8,
     /// The frequency of the pixel clock in hertz; 0 if it is not known.
     0x0f clock_hz: u32,
@@ -233,6 +245,14 @@ impl Capabilities {
             // A separate capability reports this one; every board names datapath 1 here.
             Datapath::Grids => Err(UnknownDatapath { id: self.datapath }),
         }
+    }
+
+    /// The source of the pixel clock; none if [`Self::clock_source`] is no code of one.
+    #[must_use]
+    pub fn source_of_clock(&self) -> Option<ClockSource> {
+        [ClockSource::Host, ClockSource::Pixclk, ClockSource::Pll]
+            .into_iter()
+            .find(|&source| source as u8 == self.clock_source)
     }
 
     /// The sample depths.

@@ -14,7 +14,7 @@ mod tables;
 use alloc::vec::Vec;
 
 pub use bursts::{Burst, BurstMode, BurstState, Expect, FrameRecord, Records, TrappedRow};
-pub use capabilities::{BoardNature, Bursts, Capabilities, Depths, Grids};
+pub use capabilities::{BoardNature, Bursts, Capabilities, ClockSource, Depths, Grids};
 pub use datapath::{Datapath, UnknownDatapath};
 pub use hello::{Hello, MAGIC, Welcome};
 pub use refusal::{Refusal, RefusalCode};

@@ -41,6 +41,8 @@ const IMPOSSIBLE: &[Claim] = &[
     ("row_banks_out = 1", |board| board.row_banks_out = 1),
     ("step_ports = 0", |board| board.step_ports = 0),
     ("kernel_ports = 0", |board| board.kernel_ports = 0),
+    ("clock_source = 3", |board| board.clock_source = 3),
+    ("clock_source = 255", |board| board.clock_source = 255),
     ("records = 0", |board| records(board, 0)),
     ("records = 1", |board| records(board, 1)),
     ("entries = 0", |board| grids(board, |grids| grids.entries = 0)),

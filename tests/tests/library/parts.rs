@@ -244,6 +244,9 @@ fn a_board_that_says_that_it_is_none_is_no_hardware() {
     let hardware = judged(BoardNature::Hardware, true);
     assert_eq!(hardware.verdict(), Verdict::Pass);
     assert!(hardware.not_exercised.contains(&NotExercised::CameraPins {}));
+    // It says that its clock is the host's own, as a mock does.
+    let clock = NotExercised::UnseenClock { clock_hz: 96_000_000 };
+    assert!(hardware.not_exercised.contains(&clock), "{:?}", hardware.not_exercised);
     for (nature, board) in [(BoardNature::Mock, BoardKind::Mock), (BoardNature::Simulation, BoardKind::Sim)] {
         let report = judged(nature, false);
         assert_eq!(report.verdict(), Verdict::Pass);

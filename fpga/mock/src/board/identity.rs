@@ -1,6 +1,6 @@
 //! What the board says about itself.
 
-use halfrow_protocol::message::{BoardNature, Capabilities, Grids, Status};
+use halfrow_protocol::message::{BoardNature, Capabilities, ClockSource, Grids, Status};
 
 use super::Board;
 use super::bursts::capability;
@@ -19,9 +19,6 @@ const GRID_WIDTH: u16 = 144;
 pub(super) const ROW_FACTOR_PORTS: u8 = 1;
 /// Ports by which it reads nodes: i and i + 1 at once.
 pub(super) const KERNEL_PORTS: u8 = 2;
-
-/// The `clock_source` of WIRE.md for a PLL.
-const PLL: u8 = 2;
 
 /// How far the board's claims are above the truth; not at all by default.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,7 +63,7 @@ impl Board {
             row_banks_out: options.row_banks_out,
             step_ports: ROW_FACTOR_PORTS,
             kernel_ports: KERNEL_PORTS,
-            clock_source: if claims.pll_hz.is_some() { PLL } else { 0 },
+            clock_source: if claims.pll_hz.is_some() { ClockSource::Pll } else { ClockSource::Host } as u8,
             clock_hz: claims.pll_hz.unwrap_or(options.pixel_clock),
             bursts: capability(options),
             entered: options.entered,

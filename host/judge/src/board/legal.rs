@@ -64,7 +64,7 @@ pub(crate) fn frame_clocks((width, height): (usize, usize), blanking: u16, betwe
 }
 
 /// Of datapath 1, and of datapath 2 in addition.
-const LIMITS: [Limit; 14] = [
+const LIMITS: [Limit; 15] = [
     Limit {
         name: "max_width",
         legal: || format!("rows have an even number of samples, {MIN_WIDTH} to {MAX_WIDTH}"),
@@ -81,7 +81,7 @@ const LIMITS: [Limit; 14] = [
         name: "depths",
         legal: || "a board has at least one of 8, 10 and 12 bits".to_owned(),
         value: |board| board.depths.into(),
-        holds: |board| DEPTHS.into_iter().any(|bits| board.sample_depths().has(bits)),
+        holds: |board| BitDepth::ALL.iter().any(|depth| board.sample_depths().has(depth.bits() as u8)),
     },
     Limit {
         name: "taps",
@@ -130,6 +130,12 @@ const LIMITS: [Limit; 14] = [
         legal: || "a datapath that reads nodes has at least one port for them".to_owned(),
         value: |board| board.kernel_ports.into(),
         holds: |board| board.kernel_ports >= 1,
+    },
+    Limit {
+        name: "clock_source",
+        legal: || "a pixel clock is the host's own (0), PIXCLK (1) or a PLL's (2)".to_owned(),
+        value: |board| board.clock_source.into(),
+        holds: |board| board.source_of_clock().is_some(),
     },
     Limit {
         name: "records",

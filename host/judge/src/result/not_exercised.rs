@@ -72,7 +72,8 @@ pub enum NotExercised {
         /// What was seen of it.
         seen: ClockSeen,
     },
-    /// The pixel clock that the board names was not checked: only frames at speed show it, and none were made.
+    /// The pixel clock that the board names was not checked: only frames at speed show it, and none were made; or it is hardware
+    /// that names the clock of a mock.
     UnseenClock {
         /// The one that it names, in hertz.
         clock_hz: u32,

@@ -34,7 +34,7 @@ pub fn not_exercised(part: &NotExercised) -> String {
             format!("{}, since {}", clock(*clock_hz), seen_of_clock(*seen))
         }
         NotExercised::UnseenClock { clock_hz } => {
-            format!("{}, which only frames at speed show", clock(*clock_hz))
+            format!("{}, which was not measured", clock(*clock_hz))
         }
         NotExercised::Rules {} => "the protocol rules (what the board must refuse, keep and end)".to_owned(),
         NotExercised::Grids {} => "correction grids (datapath 2)".to_owned(),

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{BurstState, Records};
+use halfrow_protocol::message::{BurstState, ClockSource, Records};
 
 use super::USUAL;
 use super::burst::BurstPlan;
@@ -15,10 +15,6 @@ use crate::run::plan::Generation;
 use crate::run::sessions::second_look::LOOKS;
 use crate::run::steps::Run;
 
-/// The `clock_source` in WIRE.md of a clock that comes from outside.
-const PIXCLK: u8 = 1;
-/// The one of a clock that the board makes.
-const PLL: u8 = 2;
 /// The shortest time from which a clock is concluded to be slow: a board may take 50 ms until a burst begins (WIRE.md).
 const TELLING: Duration = Duration::from_millis(500);
 /// The most bursts in which a wrong clock is looked for, since some say nothing about it.
@@ -134,9 +130,9 @@ impl Run<'_> {
         watched: &BurstSeen,
     ) -> Result<ClockSeen, End> {
         let Some(clock_hz) = self.named_clock() else { return Ok(ClockSeen::default()) };
-        let source = self.board.capabilities.clock_source;
+        let source = self.board.capabilities.source_of_clock();
         let first = watched.clock;
-        if source != PLL || first.allows(clock_hz) {
+        if source != Some(ClockSource::Pll) || first.allows(clock_hz) {
             return Ok(first);
         }
         tracing::info!(
@@ -156,18 +152,30 @@ impl Run<'_> {
     fn named_clock(&self) -> Option<u32> {
         let capabilities = &self.board.capabilities;
         let is_real = capabilities.nature != BoardNature::Simulation
-            && [PIXCLK, PLL].contains(&capabilities.clock_source);
+            && matches!(capabilities.source_of_clock(), Some(ClockSource::Pixclk | ClockSource::Pll));
         Some(capabilities.clock_hz).filter(|&clock_hz| is_real && clock_hz != 0)
     }
 
-    /// That clock as not exercised, for a run without frames that would show it.
+    /// The clock that hardware names and says to be the host's own, which no host gives to hardware.
+    fn hidden_clock(&self) -> Option<u32> {
+        let capabilities = &self.board.capabilities;
+        let is_hidden = capabilities.nature == BoardNature::Hardware
+            && capabilities.source_of_clock() == Some(ClockSource::Host);
+        Some(capabilities.clock_hz).filter(|&clock_hz| is_hidden && clock_hz != 0)
+    }
+
+    /// The clock that the board names as not exercised, for a run without frames that would show it.
     pub(super) fn clock_unseen(&self) -> Option<NotExercised> {
-        self.named_clock().map(|clock_hz| NotExercised::UnseenClock { clock_hz })
+        let clock_hz = self.named_clock().or_else(|| self.hidden_clock())?;
+        Some(NotExercised::UnseenClock { clock_hz })
     }
 
     /// The named clock as not exercised, if it was seen to be another one and that is not the board's fault, or not certain, or
     /// if the board does not say whose it is.
     pub(super) fn clock_not_exercised(&self, seen: ClockSeen) -> Option<NotExercised> {
+        if let Some(clock_hz) = self.hidden_clock() {
+            return Some(NotExercised::UnseenClock { clock_hz });
+        }
         let clock_hz = self.board.capabilities.clock_hz;
         (!seen.allows(clock_hz)).then_some(NotExercised::NamedClock { clock_hz, seen })
     }
