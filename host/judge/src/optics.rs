@@ -35,6 +35,10 @@ pub const PAPER_FIELD: f64 = 180.0;
 /// The prefix that names an equidistant lens in place of a lens file. R in pixels follows.
 pub const EQUIDISTANT: &str = "equidistant:";
 
+/// The most samples that a board's line memory may hold: the greatest power of two in capability 07 (WIRE.md). What a board with
+/// a shorter one takes is known only when it is asked.
+pub const LONGEST_RING: usize = 1 << 15;
+
 /// How tables are computed from a lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TablesBy {
@@ -269,8 +273,8 @@ pub fn choose(
 ) -> Result<Chosen, OpticsError> {
     let path = file.as_ref().map(|(path, _)| *path);
     let chosen = unchecked(file, optics, kernel_name)?;
-    // The model needs legal tables too: its paths agree only on tables that a board takes.
-    let served = chosen.tables.check_ring(chosen.tables.geometry().width().next_power_of_two());
+    // The model needs legal tables too: its paths agree only on grids that some board takes.
+    let served = chosen.tables.check_ring(LONGEST_RING);
     served.map_err(|source| whose(source, path, &chosen.optics))?;
     Ok(chosen)
 }

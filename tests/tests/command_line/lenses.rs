@@ -319,9 +319,9 @@ fn long_numbers_are_told_in_short() {
 #[test]
 fn a_centre_that_no_board_can_do_is_refused_by_the_tables() {
     let (folder, path) = (Folder::new(), lens("opencv-4.10.yml"));
-    let size = ["--width", "128", "--height", "72", "--centre-x", "0", "--centre-y", "71"];
+    let size = ["--width", "128", "--height", "72", "--centre-x", "127", "--centre-y", "71"];
     let call: Vec<_> = ["tables", "--lens", &path, "-o", "x.json"].into_iter().chain(size).collect();
-    refused(&folder, &call, "row 0 needs samples 7 columns older than a ring of 128 still holds");
+    refused(&folder, &call, "columns later than half a row of delay brings them");
     let said =
         json(&folder, &["lens", "--json", "--lens", &path].into_iter().chain(size).collect::<Vec<_>>());
     assert!(said["illegal"].as_str().unwrap().contains("needs samples"), "{}", said["illegal"]);

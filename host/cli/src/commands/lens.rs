@@ -15,7 +15,7 @@ use crate::exit::Exit;
 use crate::files::prepare_files;
 use halfrow::call::Files;
 use halfrow::frames::{self, HeatMap};
-use halfrow::optics::{Optics, OpticsError, TablesBy};
+use halfrow::optics::{LONGEST_RING, Optics, OpticsError, TablesBy};
 use halfrow::words::{count, grouped, verb};
 use halfrow_lab::{Amounts, Residuals};
 
@@ -96,7 +96,7 @@ impl<'a> Figures<'a> {
             };
             if by == optics.by {
                 optics.check_circle(&tables)?;
-                illegal = tables.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
+                illegal = tables.check_ring(LONGEST_RING).err();
             }
             let residuals = Residuals::of(&optics.camera, &tables);
             all.push(TableResiduals { by, shape: tables.shape(), residuals });
