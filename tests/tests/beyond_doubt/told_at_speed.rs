@@ -1,5 +1,8 @@
 //! What is told of frames that a board makes on its own: no more than was seen of them.
 
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
 use halfrow::report;
 use halfrow::result::{
     BurstCount, CheckName, Defect, Finding, MadeAs, NotExercised, Outcome, Repetition, Report, SoakLength,
@@ -224,4 +227,27 @@ fn a_soak_with_a_pause_was_none_at_full_speed() {
         check.detail()
     );
     assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
+}
+
+/// A board closes a session in which it hears nothing for 10 s (AT-SPEED.md, *Ends*), and a slow host may take 60 ms for a frame.
+#[test]
+fn a_host_that_has_many_records_to_judge_does_not_fall_silent() {
+    let asked = Arc::new(Mutex::new(Vec::new()));
+    let seen = Arc::clone(&asked);
+    let options = Options { records: 1024, ..Options::default() };
+    let board = Altered::new(&options, move |toward, packet: Passing| {
+        let read = Packet { header: packet.header, payload: &packet.payload };
+        if let (Toward::Board, Ok(Request::Records { from })) = (toward, Request::read(&read)) {
+            seen.lock().unwrap().push(from);
+        }
+        vec![packet]
+    });
+    // At 96 MHz they are 369 frames of 520 clocks, and a reply has room for 226 records.
+    let parts = Some(Selection::least().with(Part::AtSpeed, 1000));
+    let at_speed = AtSpeed::For(Duration::from_millis(2));
+    let report = judge_by_plan(&Plan { at_speed, parts, ..System::TINY.plan() }, board.candidate());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+    let asked = asked.lock().unwrap();
+    let most = asked.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max();
+    assert!(most.is_some_and(|most| most <= 100), "{asked:?}");
 }

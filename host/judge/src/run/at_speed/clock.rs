@@ -62,7 +62,10 @@ impl Stopwatch {
             self.since = (at, made);
         }
         let under_way = before.saturating_sub(self.since.0);
-        let may_wait = made - self.freed >= plan.records() || fetched.records.len() >= Records::MOST;
+        // What is not judged yet was made all the same.
+        let may_wait = made - self.freed >= plan.records()
+            || fetched.records.len() >= Records::MOST
+            || fetched.records.len() > (made - from) as usize;
         if fetched.state == BurstState::UnderWay && !may_wait && under_way >= TELLING {
             let clocks = plan.clocks_of(made - self.since.1 + 1) + u64::from(plan.latency);
             let most = hertz(clocks, under_way);

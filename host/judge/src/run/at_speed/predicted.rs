@@ -11,7 +11,7 @@ use crate::run::Generation;
 use crate::run::threads::{self, NoThread};
 
 /// The most frames that are predicted ahead of the board.
-const AHEAD: usize = 64;
+pub(super) const AHEAD: usize = 64;
 
 /// The signatures of the frames of `plan` in order, predicted on a thread of `scope`. The thread ends when the receiver
 /// is dropped.

@@ -8,7 +8,7 @@ use halfrow_protocol::message::{Burst, BurstState, FrameRecord};
 
 use super::burst::BurstPlan;
 use super::clock::Stopwatch;
-use super::predicted;
+use super::predicted::{self, AHEAD};
 use crate::board::{Board, BoardError};
 use crate::result::{BurstCount, CheckName, ClockSeen, Finding};
 use crate::run::findings::{During, End};
@@ -113,19 +113,24 @@ struct Watch<'a> {
     told: &'a mut dyn FnMut(&BurstSeen, Duration),
     /// For how long no record has come.
     idle: Duration,
+    /// Whether the last look left records that had come.
+    left: bool,
 }
 
 impl Watch<'_> {
-    /// Fetches and judges the records that there are. Returns whether they were the last.
+    /// Fetches the records that there are, and judges the first [`AHEAD`] of them. Returns whether they were the last.
     fn look(&mut self, watched: &mut BurstSeen) -> Result<bool, BoardError> {
         let (before, from) = (self.board.heard_at(), watched.frames);
         let fetched = self.board.records(self.burst.burst, from);
         let fetched = fetched.map_err(|error| self.board.of_last_burst(error))?;
-        for record in &fetched.records {
+        // While a frame is predicted the board hears nothing, and it closes a session in which it hears nothing for long.
+        for record in fetched.records.iter().take(AHEAD) {
             let Ok(expected) = self.predicted.recv() else { break };
             watched.take(self, expected, record);
             self.idle = Duration::ZERO;
         }
+        let judged = (watched.frames - from) as usize;
+        self.left = judged == AHEAD && judged < fetched.records.len();
         watched.compare_count(self.plan, from.saturating_add(fetched.records.len() as u32));
         self.stopwatch.note(self.plan, watched, &fetched, from, (before, self.board.heard_at()));
         if !fetched.records.is_empty() {
@@ -150,6 +155,9 @@ impl Watch<'_> {
         let unclear = |finding| End::error(CheckName::AtSpeed, Cause::Station, finding);
         let frames = self.plan.frames;
         while !self.look(watched).during(CheckName::AtSpeed)? {
+            if self.left {
+                continue;
+            }
             if self.idle >= self.plan.patience() {
                 let (frame, seconds) = (watched.frames, self.idle.as_secs_f64());
                 return Err(unclear(Finding::BurstStalled { frame, frames, seconds }));
@@ -196,6 +204,7 @@ impl Run<'_> {
                 stopwatch,
                 told,
                 idle: Duration::ZERO,
+                left: false,
             };
             watch.finish(&mut watched)
         });
