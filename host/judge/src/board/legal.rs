@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use halfrow_model::{MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
+use halfrow_model::{BitDepth, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
 use halfrow_protocol::message::Grids;
 
 use super::{BoardError, Bursts, Capabilities, Datapath};
@@ -20,8 +20,6 @@ struct Limit {
 /// The sizes that the datapath is defined for.
 const WIDTHS: RangeInclusive<usize> = MIN_WIDTH..=MAX_WIDTH;
 const HEIGHTS: RangeInclusive<usize> = 1..=MAX_HEIGHT;
-/// The depths of samples, in bits.
-const DEPTHS: [u8; 3] = [8, 10, 12];
 /// L = 3 + p: three samples of look-ahead, and the pipeline.
 const MIN_LATENCY: u8 = 3;
 /// The largest L that a board may have.

@@ -1,5 +1,6 @@
 //! What a board says about itself, as reports carry it.
 
+use halfrow_model::BitDepth;
 use serde::{Deserialize, Serialize};
 
 use crate::board::{Bursts, Capabilities, Welcome, grids};
@@ -112,7 +113,11 @@ impl Identity {
             datapath: capabilities.datapath,
             max_width: capabilities.max_width,
             max_height: capabilities.max_height,
-            depths: [8, 10, 12].into_iter().filter(|&bits| depths.has(bits)).collect(),
+            depths: BitDepth::ALL
+                .map(|depth| depth.bits() as u8)
+                .into_iter()
+                .filter(|&bits| depths.has(bits))
+                .collect(),
             taps: capabilities.taps,
             latency: capabilities.latency,
             ring: capabilities.ring,

@@ -90,3 +90,17 @@ fn may_come_from_line(finding: &Finding) -> bool {
         _ => false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::OF_LINE;
+    use crate::result::codes::LISTS;
+
+    #[test]
+    fn every_problem_of_a_line_is_one_that_there_is() {
+        let codes: Vec<_> =
+            LISTS.into_iter().flatten().flat_map(|list| list.codes).map(|(code, _)| *code).collect();
+        let unknown: Vec<_> = OF_LINE.into_iter().filter(|code| !codes.contains(code)).collect();
+        assert!(unknown.is_empty(), "{unknown:?}");
+    }
+}

@@ -98,13 +98,8 @@ impl Run<'_> {
         match self.plan.amount(Part::AtSpeed) {
             0 => Err(NoBurst::LeftOut {}),
             _ if self.plan.at_speed == AtSpeed::Off => Err(NoBurst::NotAskedFor {}),
-            _ => self.known_bursts(),
+            _ => known_bursts(&self.board.capabilities),
         }
-    }
-
-    /// The bursts that the board makes, or why there are none that this program knows.
-    pub(super) fn known_bursts(&self) -> Result<Bursts, NoBurst> {
-        known_bursts(&self.board.capabilities)
     }
 
     fn judge_burst(&mut self, bursts: Bursts, seen: &mut Observations) -> Result<Exercised, End> {

@@ -8,6 +8,7 @@ use halfrow_model::{NODES, RowFactor, Source, TAP_NAMES, TableSet};
 use crate::board::{BoardNature, grids};
 use crate::result::{CheckName, Identity, NotExercised};
 use crate::run::Findings;
+use crate::run::at_speed::known_bursts;
 use crate::run::findings::levels::{Levels, Shown};
 use crate::run::frames::observations::Observations;
 use crate::run::plan::Generation;
@@ -39,7 +40,7 @@ impl Run<'_> {
         let has_grid = generations.iter().any(|generation| generation.tables.shape().is_some());
         let no_grid = identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
         let untried = !checks.has_passed(CheckName::Rules);
-        let records = self.known_bursts().map_or(0, |bursts| u32::from(bursts.records));
+        let records = known_bursts(&self.board.capabilities).map_or(0, |bursts| u32::from(bursts.records));
         let are_left = !untried && records > MOST_FILLED;
         let is_physical = self.board.capabilities.nature == BoardNature::Hardware;
         let others = [

@@ -123,8 +123,7 @@ impl<'a> Prices<'a> {
     }
 
     fn has_bursts(&self) -> bool {
-        self.plan.at_speed != AtSpeed::Off
-            && self.capabilities.bursts.is_some_and(|bursts| bursts.content == at_speed::CONTENT)
+        self.plan.at_speed != AtSpeed::Off && at_speed::known_bursts(self.capabilities).is_ok()
     }
 
     /// The most of `part`: rows, frames at speed, or 1.

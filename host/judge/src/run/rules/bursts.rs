@@ -13,7 +13,7 @@ use super::{FIRST_FACTOR, Rules, longer, of_board};
 use crate::board::{BoardError, Fetched, frame_clocks};
 use crate::result::{Answer, Rule};
 use crate::run::Generation;
-use crate::run::at_speed::{clock_hz, content, signer};
+use crate::run::at_speed::{clock_hz, content, known_bursts, signer};
 use crate::run::findings::End;
 
 /// Frames of a burst that must be right: every board has records for two.
@@ -83,7 +83,7 @@ impl Rules<'_, '_> {
 
     /// A burst of `frames` small frames with a name of its own; none if the board makes no bursts.
     pub(super) fn small_burst(&self, frames: u32) -> Option<Burst> {
-        let bursts = self.run.known_bursts().ok()?;
+        let bursts = known_bursts(&self.capabilities).ok()?;
         Some(Burst {
             burst: self.run.bursts + 1,
             frames,

@@ -31,6 +31,7 @@ use halfrow_model::Geometry;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
 
+use super::at_speed::known_bursts;
 use super::findings::End;
 use super::plan::Segment;
 use super::plan::parts::of_height;
@@ -125,7 +126,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         self.answered_once()?;
         self.sessions()?;
         self.wide()?;
-        if self.run.known_bursts().is_ok() {
+        if known_bursts(&self.capabilities).is_ok() {
             self.bursts()?;
             self.trap()?;
         }

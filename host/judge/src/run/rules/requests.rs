@@ -8,6 +8,7 @@ use halfrow_protocol::message::{
 use super::{FIRST_FACTOR, Rules, answer, broken, longer, payload};
 use crate::board::Response;
 use crate::result::Rule;
+use crate::run::at_speed::known_bursts;
 use crate::run::findings::End;
 
 /// A value that has no meaning in any byte with few values.
@@ -60,7 +61,7 @@ impl Rules<'_, '_> {
     fn without_meaning(&mut self) -> Result<(), End> {
         let span = Span { count: 0, ..FIRST_FACTOR };
         let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 1, shape: None };
-        let burst = self.run.known_bursts().ok().map(|bursts| Burst {
+        let burst = known_bursts(&self.capabilities).ok().map(|bursts| Burst {
             burst: 0,
             frames: 0,
             seed: 0,

@@ -15,6 +15,7 @@ use super::{FIRST_FACTOR, Refusals, Rules, broken, of_board};
 use crate::board::{Board, BoardError, Given, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
+use crate::run::at_speed::known_bursts;
 use crate::run::findings::End;
 use crate::run::frames::counters::rows_numbered;
 
@@ -47,7 +48,7 @@ impl Rules<'_, '_> {
         self.taken_over()?;
         self.numbers_of_sessions()?;
         self.powered(Self::session_after_rows)?;
-        if self.run.known_bursts().is_ok() {
+        if known_bursts(&self.capabilities).is_ok() {
             self.powered(Self::session_after_a_burst)?;
         }
         self.rows_again()
@@ -327,7 +328,7 @@ impl Rules<'_, '_> {
         let other =
             Commit { steps_crc: !0, kernel_crc: 0, first_frame: 0, generation: !GENERATION, shape: None };
         self.refused(rule, &Request::Commit(other), RefusalCode::TableCrc, Table::RowFactors as u16)?;
-        if self.run.known_bursts().is_err() {
+        if known_bursts(&self.capabilities).is_err() {
             return Ok(());
         }
         self.no_records(rule)?;

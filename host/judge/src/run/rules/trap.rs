@@ -13,7 +13,7 @@ use super::{Rules, longer, of_board};
 use crate::reference::correct;
 use crate::result::Rule;
 use crate::run::Generation;
-use crate::run::at_speed::drawn_factors;
+use crate::run::at_speed::{drawn_factors, known_bursts};
 use crate::run::findings::End;
 use crate::run::plan::parts::of_height;
 use crate::run::plan::variations::Build;
@@ -83,7 +83,7 @@ impl Rules<'_, '_> {
 
     /// With `made` active, expects a wrong signature for the last row of a frame, which must be kept.
     pub(super) fn last_row_trapped(&mut self, made: &Generation) -> Result<(), End> {
-        let bursts = self.run.known_bursts().is_ok() && self.has_trap();
+        let bursts = known_bursts(&self.capabilities).is_ok() && self.has_trap();
         let Some(frame) = self.trapped_frame(made).filter(|_| bursts) else { return Ok(()) };
         let mut expected: Vec<_> = frame.rows().map(row_signature).collect();
         let Some(last) = expected.last_mut() else { return Ok(()) };
