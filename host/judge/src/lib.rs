@@ -24,10 +24,10 @@
 //!
 //! # Inside
 //!
-//! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`run`] alone knows the order of things. [`probe`]
-//! asks a device whether it is a board, [`link_test`] measures what a link can do, [`correction`] uses a board to correct frames,
-//! [`lenses`] reads the files of calibration programs, [`optics`] makes plans of them, and [`call`] checks the files and options
-//! of a call before anything is done.
+//! Only [`link`] touches a device, only [`board`] sends and receives, and [`run`] alone knows the order of things; its rules
+//! write requests by hand. [`probe`] asks a device whether it is a board, [`link_test`] measures what a link can do,
+//! [`correction`] uses a board to correct frames, [`lenses`] reads the files of calibration programs, [`optics`] makes plans of
+//! them, and [`call`] checks the files and options of a call before anything is done.
 //! [`compare`], [`diagnosis`], [`result`] and [`report`] see samples and counts, never a link.
 //! [`words`] has the numbers and names in the form in which all of them are reported.
 

@@ -234,7 +234,7 @@ impl<T> Fault<T> {
     }
 }
 
-/// A parameter of the fault is unknown, or its value is wrong.
+/// The value of a parameter of the fault is wrong, or contradicts another.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("fault={fault} has a wrong parameter")]
 pub struct FaultError {

@@ -22,7 +22,8 @@ pub enum ResetLevel {
 pub struct Reset {
     /// How much it drops.
     pub level: ResetLevel,
-    /// The row sequence number that the board then waits for. It is beyond any that was sent, so that no late row fits.
+    /// The row sequence number that the board then waits for. A host that goes on picks one beyond any that it sent, so that no
+    /// late row fits.
     pub next_row: u32,
 }
 

@@ -21,7 +21,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings)?;
     let asked = Board::with(candidate.link, &options, |board| {
-        (board.status(false), BoardReport::of(board, candidate.kind, candidate.target))
+        (
+            board.status(false),
+            BoardReport::of(board.welcome(), board.capabilities(), candidate.kind, candidate.target),
+        )
     });
     let (status, report) = asked?;
     let status = status?;

@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let options = arguments.board.measuring_options(&context.settings)?;
     let asked = Board::with(candidate.link, &options, |board| {
         let tested = link_test::run(board, arguments.seconds, arguments.seed);
-        (tested, BoardReport::of(board, candidate.kind, candidate.target))
+        (tested, BoardReport::of(board.welcome(), board.capabilities(), candidate.kind, candidate.target))
     });
     let (tested, board) = asked?;
     let figures = tested.map_err(|error| match error {

@@ -187,7 +187,9 @@ fn greet(target: &Target, stop: Stop) -> Result<BoardReport, (Failure, Next)> {
         (error.into(), next)
     })?;
     let options = OpenOptions { when_held: WhenHeld::Leave, stop, ..OpenOptions::default() };
-    let report = |board: &mut Board| BoardReport::of(board, candidate.kind, candidate.target);
+    let report = |board: &mut Board| {
+        BoardReport::of(board.welcome(), board.capabilities(), candidate.kind, candidate.target)
+    };
     Board::with(candidate.link, &options, report).map_err(|failed| {
         let is_cut = matches!(failed.error, BoardError::Timeout { .. });
         let failure = Failure::from(failed);

@@ -1,11 +1,12 @@
 //! What a board counts, and what the host counts for comparison.
 
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::{ResetLevel, Status};
+use halfrow_protocol::message::{Reply, ResetLevel, Status};
 
+use super::answer::take_reply;
 use super::counted::Miscount;
 use super::deadlines::Step;
-use super::response::Response;
+use super::sent_requests::Outgoing;
 use super::{Board, BoardError};
 
 impl Board {
@@ -17,16 +18,24 @@ impl Board {
         self.conversation.status(clear, Step::Request)
     }
 
-    /// Has the board clear its counters by `clear`, any number but 0, and returns its answer.
+    /// Has the board clear its counters by `clear`, any number but 0, and returns what they were; none if it refuses.
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
-    pub(crate) fn clear_by(&mut self, clear: u8) -> Result<Response, BoardError> {
+    pub(crate) fn clear_by(&mut self, clear: u8) -> Result<Option<Status>, BoardError> {
         // Counts what came before it is forgotten.
         self.status(false)?;
-        let said = self.ask(Kind::Status, &[clear])?;
+        let request = Outgoing::Bytes(Kind::Status, &[clear]);
+        let answer = self.conversation.ask(&request, Step::Request, |_| true)?;
         self.conversation.counted.set_back(self.conversation.tally);
-        Ok(said)
+        let told = take_reply(Kind::Status, &answer, |reply| match reply {
+            Reply::Status(status) => Some(status),
+            _ => None,
+        });
+        match told {
+            Err(BoardError::Refused { .. }) => Ok(None),
+            told => told.map(Some),
+        }
     }
 
     /// The board's counters, even if the run was stopped. Then the wait is as short as at the end of a session.

@@ -1,4 +1,5 @@
-//! A board: whatever answers the protocol behind a link. This is the only module that speaks the protocol.
+//! A board: whatever answers the protocol behind a link. Only this module sends and receives; the rules of a run write requests
+//! by hand.
 
 mod answer;
 mod bursts;

@@ -6,8 +6,10 @@
 //!         explain      defects     sample by sample, and keeps the best
 //! ```
 //!
-//! Every suspect is a single defect that was simulated exactly. Its share says how many of the differing samples it predicts to
-//! the bit. Where nothing explains them, [`diagnose`] describes where they lie and names no part.
+//! Nearly every suspect is a single defect that was simulated: from the tables and what entered or, where it moves, loses or mixes
+//! rows, from what was found as well. Its share says how many of the differing samples it predicts to the bit. Too small a blanking
+//! is told by which frames are wrong, and predicts none. Where nothing explains the samples, [`diagnose`] describes where they
+//! lie and names no part.
 
 mod blanking;
 mod datapath;
@@ -64,7 +66,7 @@ fn address_bits(entries: usize) -> u32 {
 /// The defects that explain the differences best, at most three, the likeliest first; none if nothing differs.
 ///
 /// If several explain all of them, their evidence says so. Where no defect explains most of them, the first suspect is `unknown`
-/// and describes where they lie.
+/// and describes where they lie; but too small a blanking comes before any that does not explain all of them.
 #[must_use]
 pub fn diagnose(case: &Case<'_>) -> Vec<Suspect> {
     let witnesses = Witnesses::of(case);

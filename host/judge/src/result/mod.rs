@@ -37,7 +37,7 @@ pub mod wording;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use crate::board::Board;
+use crate::board::{Capabilities, Welcome};
 use crate::frames::street::EdgeDeviation;
 use crate::verdict::{Cause, Verdict};
 use not_exercised::InWords;
@@ -265,11 +265,11 @@ pub struct BoardReport {
 }
 
 impl BoardReport {
-    /// The report on a board that answers at a `target` of this kind.
+    /// The report on a board that answers so at a `target` of this kind.
     #[must_use]
-    pub fn of(board: &Board, kind: BoardKind, target: String) -> Self {
-        let kind = kind.confirmed_by(board.capabilities.nature);
-        Self { kind, target, identity: Some(Identity::of(&board.welcome, &board.capabilities)) }
+    pub fn of(welcome: &Welcome, capabilities: &Capabilities, kind: BoardKind, target: String) -> Self {
+        let kind = kind.confirmed_by(capabilities.nature);
+        Self { kind, target, identity: Some(Identity::of(welcome, capabilities)) }
     }
 }
 

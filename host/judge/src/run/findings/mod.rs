@@ -79,6 +79,11 @@ impl Findings {
 
     /// Notes what the board says about itself.
     pub(crate) fn note_identity(&mut self, board: &Board) {
-        self.board = BoardReport::of(board, self.board.kind, mem::take(&mut self.board.target));
+        self.board = BoardReport::of(
+            &board.welcome,
+            &board.capabilities,
+            self.board.kind,
+            mem::take(&mut self.board.target),
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! What a run will do. It is decided and checked before any board is opened; only `within` asks the board first what its link can do.
+//! What a run will do. What is asked for is checked before a board is opened; the schedule then follows from the board's build
+//! and, with `within`, from what its link can do.
 
 pub(super) mod misfit;
 pub(super) mod parts;

@@ -2,12 +2,10 @@
 
 use std::mem;
 
-use halfrow_protocol::{Header, Kind, Packet, Reply};
-
 use super::rows::{FRAME, GENERATION};
 use super::without_effect::others;
 use super::{Refusals, Rules, miscounted, of_board, of_rows};
-use crate::board::{Given, Response, Status};
+use crate::board::{Given, Status};
 use crate::result::{Counter, Finding, Rule};
 use crate::run::findings::End;
 use crate::run::frames::counters::MOVED_BY_LINKS;
@@ -119,15 +117,11 @@ impl Rules<'_, '_> {
 
     /// Clears all counters, and returns what the board says that they were.
     pub(super) fn clear(&mut self) -> Result<Option<Status>, End> {
-        let Response::Replied(payload) = self.run.board.clear_by(CLEAR).map_err(of_board)? else {
-            return Ok(None);
-        };
-        (self.refusals, self.before) = (Refusals::default(), Status::default());
-        let header = Header { kind: Kind::Status.code(), sequence: 0, reply: true, session: 0, window: 0 };
-        match Reply::read(&Packet { header, payload: &payload }) {
-            Ok(Reply::Status(status)) => Ok(Some(status)),
-            _ => Ok(None),
+        let told = self.run.board.clear_by(CLEAR).map_err(of_board)?;
+        if told.is_some() {
+            (self.refusals, self.before) = (Refusals::default(), Status::default());
         }
+        Ok(told)
     }
 
     /// `status`, which came after something that clears all counters, must have all of them 0.
