@@ -55,8 +55,10 @@ pub(crate) enum CallError {
          of the two"
     )]
     RowsOfGrid,
-    /// A number of entries was given, but no grid was asked for.
-    #[error("--entries is for the grid of --projection exact; leave it out, or give --projection exact too")]
+    /// A number of entries or a distance of nodes was given, but no grid was asked for.
+    #[error(
+        "--entries and --nodes-every are for the grid of --projection exact; leave them out, or give --projection exact too"
+    )]
     EntriesOfRows,
     /// The lens file does not give the size of its pictures.
     #[error("the lens file {} does not say how large its pictures are; give --width and --height", path.display())]

@@ -2,7 +2,7 @@
 
 /// Phrases in the libraries' sentences, each with its flag or the command to run. No phrase is part of another. A phrase is an
 /// instruction that reads well alone, with any figure after it, or a noun that keeps its meaning wherever it stands.
-pub const FLAGS: [(&str, &str); 24] = [
+pub const FLAGS: [(&str, &str); 25] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
     ("another place for the report", "--report"),
@@ -26,6 +26,7 @@ pub const FLAGS: [(&str, &str); 24] = [
     ("the lens pitch and the optical centre", "--lens-pitch, --centre-x, --centre-y"),
     ("leave out the exact projection", "--projection"),
     ("limit the entries of a grid", "--entries"),
+    ("set the nodes of a grid", "--nodes-every"),
     ("Cargo's feature `sim`", "cargo run --release --features sim"),
 ];
 

@@ -50,6 +50,8 @@ pub enum TablesBy {
     Exact {
         /// The most entries that it may have: T of the board.
         entries: usize,
+        /// Its k; none for the one that suits the lens, on a board that takes both.
+        k: Option<u32>,
     },
 }
 
@@ -158,7 +160,8 @@ impl Optics {
     /// [`OpticsError`] when no board can have one of the factors, or a grid needs more entries than allowed.
     pub fn tables_by(&self, by: TablesBy) -> Result<TableSet, OpticsError> {
         Ok(match by {
-            TablesBy::Exact { entries } => self.camera.best_grid(entries)?,
+            TablesBy::Exact { entries, k: None } => self.camera.best_grid(entries)?,
+            TablesBy::Exact { entries, k: Some(k) } => self.camera.best_grid_with_k(k, entries)?,
             TablesBy::Fitting => self.camera.fitted(),
             TablesBy::Equation9 if self.is_calibrated => self.camera.equation_9(),
             // From R as it was given. The camera would compute it from f.

@@ -35,7 +35,9 @@ pub(crate) fn tables_by(
     otherwise: TablesBy,
 ) -> PyResult<TablesBy> {
     match (projection, rows) {
-        ("exact", None) => Ok(TablesBy::Exact { entries: entries.unwrap_or(TablesBy::LEAST_ENTRIES) }),
+        ("exact", None) => {
+            Ok(TablesBy::Exact { entries: entries.unwrap_or(TablesBy::LEAST_ENTRIES), k: None })
+        }
         ("exact", Some(_)) => {
             Err(errors::conflict("rows says nothing beside projection=\"exact\"; leave one of them out"))
         }

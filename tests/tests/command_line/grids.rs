@@ -115,9 +115,11 @@ fn boards_and_calls_that_do_not_go_with_a_grid_are_named_with_the_remedy() {
     let folder = Folder::new();
     let verify = |board: &'static str| exact(&["verify", "--board", board]);
     refused(&folder, &verify("mock,datapath2=no"), "leave out the exact projection (--projection)");
-    let cases: [(&[&str], &str); 3] = [
+    let cases: [(&[&str], &str); 5] = [
         (&["--projection", "exact", "--rows", "fitted"], "leave out one of the two"),
-        (&["--projection", "rows", "--entries", "4096"], "--entries is for the grid"),
+        (&["--projection", "rows", "--entries", "4096"], "--entries and --nodes-every are for the grid"),
+        (&["--projection", "rows", "--nodes-every", "32"], "--entries and --nodes-every are for the grid"),
+        (&["--projection", "exact", "--nodes-every", "5"], "every 32 or every 64 columns"),
         (
             &["--projection", "exact", "--entries", "10"],
             "no grid for frames of 192 x 48 has 10 entries or fewer",
@@ -211,5 +213,18 @@ fn the_board_s_identity_names_the_datapath_that_it_is_judged_by() {
         let identity = told.lines().find(|line| line.contains(" identity ")).unwrap_or_default();
         assert!(identity.ends_with(&format!(", wire 1, tables for datapath {datapath}")), "{told}");
         assert!(told.contains(", datapath 1 and 2, wire 1\n"), "{told}");
+    }
+}
+
+/// Capability 12 lets a board take k = 5 alone, or 6.
+#[test]
+fn the_nodes_of_a_grid_are_as_far_apart_as_a_board_takes_them() {
+    let folder = Folder::new();
+    for (columns, k) in [("32", 5), ("64", 6)] {
+        let made =
+            folder.halfrow(exact(&["tables", "-o", "x.json", "--overwrite", "--nodes-every", columns]));
+        assert_eq!(made.code, Some(0), "{}", made.stderr);
+        let tables: Value = serde_json::from_slice(&folder.read("x.json")).unwrap();
+        assert_eq!(tables["k"], k, "{}", tables["k"]);
     }
 }

@@ -67,7 +67,7 @@ fn the_page_of_commands_shows_what_the_command_line_takes() {
 #[test]
 fn the_help_of_frames_names_no_option_of_tables() {
     let help = halfrow(["frames", "--help"]).stdout;
-    for option in ["--rows", "--projection", "--entries"] {
+    for option in ["--rows", "--projection", "--entries", "--nodes-every"] {
         assert!(!help.contains(option), "{help}");
         assert!(halfrow(["tables", "--help"]).stdout.contains(option));
     }

@@ -50,20 +50,38 @@ impl Camera {
     /// # Errors
     /// [`GridRoomError`] when every grid has more entries.
     pub fn best_grid(&self, entries: usize) -> Result<TableSet, GridRoomError> {
+        self.best_grid_of(GridShape::all(), entries)
+    }
+
+    /// The same for a board that takes only grids with a node every 2^`k` columns.
+    ///
+    /// # Errors
+    /// [`GridRoomError`] when every such grid has more entries.
+    pub fn best_grid_with_k(&self, k: u32, entries: usize) -> Result<TableSet, GridRoomError> {
+        self.best_grid_of(GridShape::all().filter(move |shape| shape.k() == k), entries)
+    }
+
+    /// The best grid of one of these shapes, of which the first is the coarsest.
+    fn best_grid_of(
+        &self,
+        all: impl Iterator<Item = GridShape> + Clone,
+        entries: usize,
+    ) -> Result<TableSet, GridRoomError> {
         let geometry = self.geometry();
+        let coarsest = all.clone().next().unwrap_or(GridShape::COARSEST);
         let fits = |shape: &GridShape| shape.entries(geometry) <= entries;
         let lattice = self.lattice();
         let error = |tables: &TableSet| lattice.error(tables);
         let mut shapes: Vec<_> =
-            GridShape::all().filter(fits).map(|shape| (error(&self.grid_by_formula(shape)), shape)).collect();
+            all.filter(fits).map(|shape| (error(&self.grid_by_formula(shape)), shape)).collect();
         shapes.sort_by(|one, other| one.0.total_cmp(&other.0));
         let tried = shapes.into_iter().take(TRIED).map(|(_, shape)| fitted(self, shape, &lattice));
-        tried.min_by(|one, other| error(one).total_cmp(&error(other))).ok_or_else(|| self.no_room(entries))
+        let best = tried.min_by(|one, other| error(one).total_cmp(&error(other)));
+        best.ok_or_else(|| self.no_room(entries, coarsest))
     }
 
-    fn no_room(&self, entries: usize) -> GridRoomError {
+    fn no_room(&self, entries: usize, shape: GridShape) -> GridRoomError {
         let (width, height) = (self.geometry().width(), self.geometry().height());
-        let shape = GridShape::COARSEST;
         GridRoomError { entries, width, height, least: shape.entries(self.geometry()), shape }
     }
 

@@ -51,7 +51,7 @@ impl GridShape {
     }
 
     /// All shapes, the coarsest first.
-    pub fn all() -> impl Iterator<Item = Self> {
+    pub fn all() -> impl Iterator<Item = Self> + Clone {
         Self::V.rev().flat_map(|v| Self::K.rev().map(move |k| Self { v, k }))
     }
 

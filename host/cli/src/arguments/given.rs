@@ -60,12 +60,13 @@ pub(crate) enum Decider {
 pub(crate) const IN_TABLE_FILES: [&str; 4] = ["width", "height", "bits", "centre_x"];
 
 /// Options that only serve to make tables, or to render built-in frames through their lens.
-const LENS: [&str; 10] = [
+const LENS: [&str; 11] = [
     "lens",
     "lens_pitch",
     "rows",
     "projection",
     "entries",
+    "nodes_every",
     "radius",
     "focal_length",
     "pixel_pitch",
@@ -111,7 +112,7 @@ impl Decider {
             Self::NoSynthesisItem => &[&["synthesis"]],
             Self::NoFrameFile => &[&["raw", "fit"]],
             Self::Headerless => &[&["fit"]],
-            Self::MadeFrames => &[&["rows", "projection", "entries"]],
+            Self::MadeFrames => &[&["rows", "projection", "entries", "nodes_every"]],
             Self::MadeTables => &[&["phase"]],
             Self::ShownLens => &[&["phase", "bits"]],
         };

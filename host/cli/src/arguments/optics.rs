@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
-use halfrow_model::{BitDepth, Equidistant, Geometry, Kernel, LensError, Phase};
+use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, Kernel, LensError, Phase};
 use halfrow_program::number::any;
 
 use crate::call_error::CallError;
@@ -58,6 +58,9 @@ pub(crate) struct LensArguments {
     #[arg(long, value_name = "ENTRIES", requires = "projection")]
     #[arg(value_parser = any::<usize>("a whole number of entries"))]
     entries: Option<usize>,
+    /// Columns from one node of a grid to the next, for a board that takes only 32 or only 64 [default: what suits the lens]
+    #[arg(long, value_name = "32|64", requires = "projection", value_parser = k_of_nodes)]
+    nodes_every: Option<u32>,
     /// Radius of the image of 180 degrees, in pixels, instead of focal length and pixel pitch
     #[arg(long, value_name = "PIXELS", conflicts_with_all = ["focal_length", "pixel_pitch", "field_of_view"])]
     #[arg(value_parser = any::<f64>("a number of pixels"))]
@@ -135,6 +138,13 @@ fn depth(text: &str) -> Result<BitDepth, String> {
     text.parse().ok().and_then(BitDepth::from_bits).ok_or_else(|| "a sample has 8, 10 or 12 bits".to_owned())
 }
 
+/// k of a grid with a node every so many columns.
+fn k_of_nodes(text: &str) -> Result<u32, String> {
+    let columns: Option<u32> = text.parse().ok();
+    let k = GridShape::K.into_iter().find(|&k| columns == Some(1 << k));
+    k.ok_or_else(|| "a grid has a node every 32 or every 64 columns".to_owned())
+}
+
 impl LensArguments {
     /// The file that describes the lens, if one does.
     pub(crate) fn file(&self) -> Option<&Path> {
@@ -158,7 +168,8 @@ impl LensArguments {
     fn by(&self, otherwise: Rows) -> TablesBy {
         match self.projection {
             Some(Projection::Exact) => {
-                TablesBy::Exact { entries: self.entries.unwrap_or(TablesBy::LEAST_ENTRIES) }
+                let entries = self.entries.unwrap_or(TablesBy::LEAST_ENTRIES);
+                TablesBy::Exact { entries, k: self.nodes_every }
             }
             Some(Projection::Rows) | None => self.rows.unwrap_or(otherwise).into(),
         }
@@ -181,7 +192,7 @@ impl LensArguments {
         if is_exact && self.rows.is_some() {
             return Err(CallError::RowsOfGrid);
         }
-        if !is_exact && self.entries.is_some() {
+        if !is_exact && (self.entries.is_some() || self.nodes_every.is_some()) {
             return Err(CallError::EntriesOfRows);
         }
         match self.lens {

@@ -83,7 +83,7 @@ impl<'a> Figures<'a> {
     fn of(optics: &'a Optics) -> Result<Self, OpticsError> {
         let exact = match optics.by {
             by @ TablesBy::Exact { .. } => by,
-            _ => TablesBy::Exact { entries: TablesBy::LEAST_ENTRIES },
+            _ => TablesBy::Exact { entries: TablesBy::LEAST_ENTRIES, k: None },
         };
         let (mut all, mut no_grid, mut illegal) = (Vec::new(), None, None);
         for by in [TablesBy::Equation9, TablesBy::Fitting, exact] {

@@ -137,7 +137,7 @@ codes! {
         Depth [bits] => "depth-not-of-board",
         NoGrids => "board-without-grids",
         GridEntries [entries, most] => "grid-too-large-for-board",
-        GridPitch [pitch] => "grid-of-other-pitch",
+        GridPitch [pitch, taken] => "grid-of-other-pitch",
         Taps => "kernel-has-too-many-taps",
         Frame [name] => "frame-unfit",
         = Ring,

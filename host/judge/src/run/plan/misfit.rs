@@ -1,6 +1,6 @@
 //! Whether a board can take what a plan uploads.
 
-use halfrow_model::{CorrectError, Kernel, TableError, TableSet, Taps};
+use halfrow_model::{CorrectError, GridShape, Kernel, TableError, TableSet, Taps};
 use halfrow_protocol::message::{BoardNature, UnknownDatapath};
 
 use super::within::WithinError;
@@ -54,11 +54,13 @@ pub enum Misfit {
     },
     /// The grid's nodes are at another distance than the board takes.
     #[error(
-        "the grid has nodes every {pitch} columns, and the board takes others; make the tables for this board"
+        "the grid has a node every {pitch} columns, which the board does not take; set the nodes of a grid to one every {taken}"
     )]
     GridPitch {
         /// 2^k.
         pitch: usize,
+        /// The least that the board takes.
+        taken: usize,
     },
     /// The kernel needs more taps than the board has.
     #[error("the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite")]
@@ -143,5 +145,35 @@ fn grid_misfit(tables: &TableSet, capabilities: &Capabilities) -> Option<Misfit>
     if entries > most {
         return Some(Misfit::GridEntries { entries, most });
     }
-    (!grids.takes(shape.k() as u8)).then(|| Misfit::GridPitch { pitch: shape.column_pitch() })
+    let k = GridShape::K.into_iter().find(|&k| grids.takes(k as u8))?;
+    (!grids.takes(shape.k() as u8)).then(|| Misfit::GridPitch { pitch: shape.column_pitch(), taken: 1 << k })
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Camera, Equidistant, Geometry, Interpolant};
+
+    use super::*;
+    use crate::run::plan::prices::usual_capabilities;
+
+    /// Bit k of capability 12 is 1 for every k that the board takes.
+    #[test]
+    fn a_grid_of_another_k_is_refused_with_the_distance_of_nodes_that_the_board_takes() {
+        let geometry = Geometry::centred(64, 8, BitDepth::Twelve).unwrap();
+        let camera = Camera::new(geometry, Equidistant::default().into(), (31.5, 3.5), 180.0).unwrap();
+        let kernel = Kernel::from(Interpolant::Hermite);
+        for (k, ks, columns) in [(5, 0x40, Some(64)), (6, 0x20, Some(32)), (6, 0x60, None), (5, 0xa0, None)] {
+            let tables = camera.grid_by_formula(GridShape::new(2, k).unwrap());
+            let plan = Plan::new(tables.clone(), kernel.clone());
+            let mut board = usual_capabilities(&plan, BoardNature::Hardware);
+            board.grids.iter_mut().for_each(|grids| grids.ks = ks);
+            let said = misfit(&tables, &kernel, &board).map(|misfit| misfit.to_string());
+            let remedy = columns.map(|columns| format!("set the nodes of a grid to one every {columns}"));
+            let is_right = match (&said, &remedy) {
+                (Some(said), Some(remedy)) => said.ends_with(remedy),
+                (said, remedy) => said.is_none() && remedy.is_none(),
+            };
+            assert!(is_right, "k = {k} of {ks:#x}: {said:?}");
+        }
+    }
 }
