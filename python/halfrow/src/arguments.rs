@@ -33,6 +33,7 @@ arguments! {
     centre_y: Option<f64>, "a row, counted from 0";
     field_of_view: f64, "an angle in degrees";
     entries: Option<usize>, "the most entries that a grid may have";
+    nodes_every: Option<usize>, "32 or 64";
     seed: u64, "a whole number from 0 to 2^64 - 1";
 }
 

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use halfrow::call;
-use halfrow::model::{BitDepth, ModelPath, Phase, UnavailablePath, UnknownPath, UnknownPhase};
+use halfrow::model::{BitDepth, GridShape, ModelPath, Phase, UnavailablePath, UnknownPath, UnknownPhase};
 use halfrow::optics::TablesBy;
 use pyo3::PyResult;
 
@@ -27,22 +27,46 @@ pub(crate) fn path(name: Option<&str>) -> PyResult<ModelPath> {
     if path.is_available() { Ok(path) } else { Err(errors::input(UnavailablePath(path))) }
 }
 
-/// How tables are made: as `rows`, `projection` and `entries` say, or `otherwise` if they leave it open.
+/// What is asked of a grid.
+pub(crate) struct OfGrid {
+    /// The most entries.
+    pub(crate) entries: Option<usize>,
+    /// Columns from one node to the next.
+    pub(crate) nodes_every: Option<usize>,
+}
+
+impl OfGrid {
+    fn tables_by(&self) -> PyResult<TablesBy> {
+        let k = |columns| {
+            let wrong = || {
+                errors::wrong_value(
+                    "a grid has a node every 32 or every 64 columns; give nodes_every one of them",
+                )
+            };
+            GridShape::k_of(columns).ok_or_else(wrong)
+        };
+        let entries = self.entries.unwrap_or(TablesBy::LEAST_ENTRIES);
+        Ok(TablesBy::Exact { entries, k: self.nodes_every.map(k).transpose()? })
+    }
+}
+
+/// How tables are made: as `rows`, `projection` and `grid` say, or `otherwise` if they leave it open.
 pub(crate) fn tables_by(
     rows: Option<&str>,
     projection: &str,
-    entries: Option<usize>,
+    grid: &OfGrid,
     otherwise: TablesBy,
 ) -> PyResult<TablesBy> {
     match (projection, rows) {
-        ("exact", None) => {
-            Ok(TablesBy::Exact { entries: entries.unwrap_or(TablesBy::LEAST_ENTRIES), k: None })
-        }
+        ("exact", None) => grid.tables_by(),
         ("exact", Some(_)) => {
             Err(errors::conflict("rows says nothing beside projection=\"exact\"; leave one of them out"))
         }
-        ("rows", _) if entries.is_some() => {
+        ("rows", _) if grid.entries.is_some() => {
             Err(errors::conflict("entries says nothing without projection=\"exact\"; leave it out"))
+        }
+        ("rows", _) if grid.nodes_every.is_some() => {
+            Err(errors::conflict("nodes_every says nothing without projection=\"exact\"; leave it out"))
         }
         ("rows", None) => Ok(otherwise),
         ("rows", Some("fitted")) => Ok(TablesBy::Fitting),

@@ -10,9 +10,10 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
 
+use crate::choices::{self, OfGrid};
 use crate::kernel::{Kernel, KernelLike};
 use crate::lens::{Lens, LensLike};
-use crate::{arguments, choices, errors, outputs};
+use crate::{arguments, errors, outputs};
 
 /// The name of a kernel that comes with a table file.
 const OF_FILE: &str = "the table file's";
@@ -34,23 +35,25 @@ impl Tables {
     /// The tables for `lens`: a Lens, a lens file, "equidistant:RADIUS", or the paper's lens.
     ///
     /// `projection` is "rows", one factor per row, or "exact", a grid of at most `entries` entries (default 2048), for boards
-    /// with datapath 2. `rows` says how row factors are found: "fitted" (the default for a lens file) or "equation-9" (the
-    /// default for other lenses). `kernel` is a Kernel, one of `halfrow.KERNELS`, or a kernel file. Raises InputError.
+    /// with datapath 2; `nodes_every` is 32 or 64, for one that takes only grids with a node every so many columns. `rows` says
+    /// how row factors are found: "fitted" (the default for a lens file) or "equation-9" (the default for other lenses). `kernel`
+    /// is a Kernel, one of `halfrow.KERNELS`, or a kernel file. Raises InputError.
     #[staticmethod]
-    #[pyo3(signature = (lens = None, *, projection = "rows", rows = None, entries = None, kernel = None))]
+    #[pyo3(signature = (lens = None, *, projection = "rows", rows = None, entries = None, nodes_every = None, kernel = None))]
     fn from_lens(
         py: Python<'_>,
         #[pyo3(from_py_with = arguments::lens)] lens: Option<LensLike<'_>>,
         projection: &str,
         rows: Option<&str>,
         #[pyo3(from_py_with = arguments::entries)] entries: Option<usize>,
+        #[pyo3(from_py_with = arguments::nodes_every)] nodes_every: Option<usize>,
         #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
     ) -> PyResult<Self> {
         let mut optics = match lens {
             Some(lens) => lens.taken()?,
             None => Lens::seen(None, &View::default())?.optics,
         };
-        optics.by = choices::tables_by(rows, projection, entries, optics.by)?;
+        optics.by = choices::tables_by(rows, projection, &OfGrid { entries, nodes_every }, optics.by)?;
         let chosen = py.detach(|| optics::choose(None, optics, None)).map_err(errors::optics)?;
         let from = chosen.optics.source_of(&chosen.tables);
         let kernel = kernel.unwrap_or_else(|| KernelLike::Name(Interpolant::Hermite.name().into()));

@@ -232,6 +232,8 @@ def test_a_run_that_gets_no_thread_is_an_error():
         (lambda: halfrow.Tables.from_lens(projection="flat"), "usage-value-wrong"),
         (lambda: halfrow.Tables.from_lens(projection="exact", rows="fitted"), "usage-arguments-conflict"),
         (lambda: halfrow.Tables.from_lens(entries=100), "usage-arguments-conflict"),
+        (lambda: halfrow.Tables.from_lens(nodes_every=32), "usage-arguments-conflict"),
+        (lambda: halfrow.Tables.from_lens(projection="exact", nodes_every=33), "usage-value-wrong"),
         (lambda: halfrow.Tables.from_lens(halfrow.Lens(), projection="exact", entries=3), "grid-without-room"),
         (lambda: halfrow.verify(timeout=-1), "option-is-no-time"),
         (lambda: halfrow.verify(at_speed=float("nan")), "option-is-no-time"),

@@ -18,6 +18,8 @@ def of_file(path):
         ({}, []),
         ({"rows": "equation-9"}, ["--rows", "equation-9"]),
         ({"projection": "exact"}, ["--projection", "exact"]),
+        ({"projection": "exact", "nodes_every": 32}, ["--projection", "exact", "--nodes-every", "32"]),
+        ({"projection": "exact", "nodes_every": 64}, ["--projection", "exact", "--nodes-every", "64"]),
         ({"kernel": "keys"}, ["--kernel", "keys"]),
     ],
 )

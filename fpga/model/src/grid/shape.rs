@@ -55,6 +55,12 @@ impl GridShape {
         Self::V.rev().flat_map(|v| Self::K.rev().map(move |k| Self { v, k }))
     }
 
+    /// The k of grids with a node every `columns` columns, if there are such grids.
+    #[must_use]
+    pub fn k_of(columns: usize) -> Option<u32> {
+        Self::K.into_iter().find(|&k| columns == 1 << k)
+    }
+
     /// v.
     #[must_use]
     pub const fn v(self) -> u32 {

@@ -140,8 +140,7 @@ fn depth(text: &str) -> Result<BitDepth, String> {
 
 /// k of a grid with a node every so many columns.
 fn k_of_nodes(text: &str) -> Result<u32, String> {
-    let columns: Option<u32> = text.parse().ok();
-    let k = GridShape::K.into_iter().find(|&k| columns == Some(1 << k));
+    let k = text.parse().ok().and_then(GridShape::k_of);
     k.ok_or_else(|| "a grid has a node every 32 or every 64 columns".to_owned())
 }
 

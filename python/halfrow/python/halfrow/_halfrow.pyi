@@ -89,6 +89,7 @@ class Tables:
         projection: str = "rows",
         rows: Optional[str] = None,
         entries: Optional[int] = None,
+        nodes_every: Optional[int] = None,
         kernel: Union[Kernel, _Name, None] = None,
     ) -> Tables: ...
     @staticmethod
