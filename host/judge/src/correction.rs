@@ -24,9 +24,9 @@ pub struct Correction<'a> {
 }
 
 impl Correction<'_> {
-    /// Uploads tables and kernel, then streams `inputs` with the least blanking that the board needs for them. Hands the samples of each corrected
-    /// frame, row after row, to `take`, in the order of the inputs, until `take` breaks. The samples of a broken board can exceed
-    /// the depth. Returns the least and the most pixel clocks that a row's first and last samples took.
+    /// Uploads tables and kernel, then streams `inputs` with the least blanking that the board needs for them. Hands the samples
+    /// of each corrected frame, row after row, to `take`, in the order of the inputs, until `take` breaks. The samples of a
+    /// broken board can exceed the depth. Returns the least and the most pixel clocks that a row's first and last samples took.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses, does not answer, or does not return a row.
