@@ -13,6 +13,7 @@ A fence of `python from=FILE` is a part of that file, line for line. What is run
 import os
 import pathlib
 import re
+import select
 import signal
 import socket
 import subprocess
@@ -120,7 +121,10 @@ class Scratch:
         text = "\n".join(block.text)
         if block.is_background:
             started = self.shell(text, stdout=subprocess.PIPE)
+            # Whatever becomes of it, `close` ends it.
             self.background.append(started)
+            if not select.select([started.stdout], [], [], SECONDS)[0]:
+                return f"{block}: it said nothing for {SECONDS} s"
             return None if started.stdout.readline() else f"{block}: it ended at once"
         started = self.shell(text, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         try:
