@@ -1,17 +1,18 @@
 """Prints a JUnit report in Markdown, for systems that show no JUnit by themselves: the verdict with what it means, what to do, and a
 table of the checks. python3 junit.py report.xml"""
 
+import re
 import sys
 import xml.etree.ElementTree
 
 MARKS = {"failure": "FAIL", "error": "ERROR", "skipped": "skipped"}
+ENTITIES = {"&": "&amp;", "<": "&lt;"}
 
 
 def cell(text):
-    """Text that ends no cell of a table, and is no markup."""
-    for plain, written in (("&", "&amp;"), ("<", "&lt;"), ("|", "\\|"), ("\n", " ")):
-        text = text.replace(plain, written)
-    return text
+    """Text that ends no cell of a table, and is shown as it is: CommonMark takes a backslash before any ASCII punctuation."""
+    line = re.sub(r"[ \t\r\n]+", " ", text.strip())
+    return re.sub(r"[!-/:-@[-`{-~]", lambda mark: ENTITIES.get(mark[0], "\\" + mark[0]), line)
 
 
 def rows(suites):

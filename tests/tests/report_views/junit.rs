@@ -167,6 +167,8 @@ fn shown(report: &Report) -> String {
 
 #[test]
 fn the_table_for_a_ci_stands_below_the_verdict_its_limits_and_what_to_do() {
+    // A backslash before a mark shows the mark.
+    let shown = |report: &Report| shown(report).replace('\\', "");
     let pass = shown(&made::pass());
     let (head, table) = pass.split_once("| check |").unwrap_or_else(|| panic!("{pass}"));
     assert!(head.contains("PASS (mock board: no hardware was tested)"), "{pass}");
@@ -179,4 +181,13 @@ fn the_table_for_a_ci_stands_below_the_verdict_its_limits_and_what_to_do() {
         head.contains("- At the bench: Reload the bitstream") && head.contains("- Next: Check entry 3"),
         "{fail}"
     );
+}
+
+/// A backslash before each mark of ASCII is CommonMark's (0.31.2, example 12).
+#[test]
+fn a_frame_s_name_is_no_markup_in_the_table_for_a_ci() {
+    let mut report = made::pass();
+    report.frames[0].name = r"[a](b) `*_~|<&\".into();
+    let shown = shown(&report);
+    assert!(shown.contains(r"| \[a\]\(b\) \`\*\_\~\|&lt;&amp;\\ \(frame 1\,"), "{shown}");
 }
