@@ -22,8 +22,8 @@ const WIDTHS: RangeInclusive<usize> = MIN_WIDTH..=MAX_WIDTH;
 const HEIGHTS: RangeInclusive<usize> = 1..=MAX_HEIGHT;
 /// L = 3 + p: three samples of look-ahead, and the pipeline.
 const MIN_LATENCY: u8 = 3;
-/// The largest L that a board may have.
-pub(crate) const MAX_LATENCY: u8 = 32;
+/// The largest L that a board may have: the pixel clocks by which a row leaves it later than half a row after it entered.
+pub const MAX_LATENCY: u8 = 32;
 /// The fewest row banks each way, and the fewest records of bursts.
 const TWO: u16 = 2;
 /// The fewest entries of a bank that takes grids.

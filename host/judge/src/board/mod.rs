@@ -42,9 +42,8 @@ pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub(crate) use counted::Miscount;
 pub use error::{BoardError, OpenFailed};
-pub(crate) use legal::{
-    LEAST_ENTRIES, MAX_LATENCY, frame_blanking, frame_clocks, grids, possible, row_blanking,
-};
+pub use legal::MAX_LATENCY;
+pub(crate) use legal::{LEAST_ENTRIES, frame_blanking, frame_clocks, grids, possible, row_blanking};
 pub(crate) use nature::Shown;
 pub use open_options::{OpenOptions, WhenHeld};
 pub use received::{Had, Received};

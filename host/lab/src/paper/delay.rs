@@ -9,11 +9,9 @@ use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
 use super::expected::DELAY_MS;
 use super::tested_board::TestedBoard;
 use super::{Item, PaperError};
+use halfrow::board::MAX_LATENCY;
 use halfrow::frames::{Builtin, Scene};
 use halfrow::progress::Progress;
-
-/// Pixel clocks that a board may add to half a row (DATAPATH.md, "Time").
-const MOST_OWN: u16 = 32;
 
 /// Pixel clocks a second, and where they come from.
 const CLOCKS: [(f64, &str); 2] = [
@@ -62,7 +60,7 @@ fn claims(latency: &RangeInclusive<u16>, half_row: u16, advertised: u16) -> [Cla
             "longest delay of a sample, in pixel clocks",
             "",
             most,
-            Accepted::UpTo((half_row + MOST_OWN).into()),
+            Accepted::UpTo((half_row + u16::from(MAX_LATENCY)).into()),
         ),
         judged(
             "the same in time, at the slowest pixel clock of 1080p30",
