@@ -137,10 +137,10 @@ fn an_empty_folder_is_a_place_for_a_report() {
     fs::create_dir(&path).unwrap();
     let prepared = [false, true].map(|overwrite| ReportFolder::prepare(&path, overwrite).unwrap());
     fs::write(path.join("notes.txt"), "the fan was off").unwrap();
-    for prepared in prepared {
-        let refused = prepared.commit(&made::pass(), &[]).unwrap_err().to_string();
-        assert!(refused.contains("it also holds `notes.txt`") || refused.contains("exists"), "{refused}");
-    }
+    let [kept, replaced] = prepared.map(|prepared| prepared.commit(&made::pass(), &[]).unwrap_err());
+    assert!(matches!(kept, ReportError::Exists { .. }), "{kept}");
+    let is_told = |why: &str| why == "it also holds `notes.txt`";
+    assert!(matches!(&replaced, ReportError::NotAReport { why, .. } if is_told(why)), "{replaced}");
     assert_eq!(names(&path), ["notes.txt"]);
 }
 
