@@ -2,14 +2,21 @@
 
 use super::preview::RgbImage;
 
-/// From dark to bright, in even steps of lightness.
-const COLOURS: [[f64; 3]; 5] = [
-    [23.0, 23.0, 32.0],
-    [131.0, 38.0, 129.0],
-    [220.0, 70.0, 106.0],
-    [254.0, 154.0, 108.0],
-    [252.0, 253.0, 191.0],
+/// Red, green and blue from nothing, which is nearly black, to the most: the brighter part of magma, whose lightness rises evenly, so
+/// that the order also shows in grey and to colour-blind readers.
+pub const MAGMA: [[u8; 3]; 8] = [
+    [0x17, 0x17, 0x20],
+    [0x83, 0x26, 0x81],
+    [0xb0, 0x31, 0x7b],
+    [0xdc, 0x46, 0x6a],
+    [0xf4, 0x69, 0x5c],
+    [0xfe, 0x9a, 0x6c],
+    [0xfe, 0xca, 0x8d],
+    [0xfc, 0xfd, 0xbf],
 ];
+
+/// The colours of a picture, in even steps of lightness.
+const COLOURS: [[u8; 3]; 5] = [MAGMA[0], MAGMA[1], MAGMA[3], MAGMA[5], MAGMA[7]];
 
 /// A picture of amounts, from 0 (dark) to the largest (bright).
 #[derive(Clone, Debug, PartialEq)]
@@ -44,13 +51,21 @@ fn colour(share: f64) -> [u8; 3] {
     let below = (place as usize).min(COLOURS.len() - 2);
     let (low, high) = (COLOURS[below], COLOURS[below + 1]);
     std::array::from_fn(|channel| {
-        (low[channel] + (high[channel] - low[channel]) * (place - below as f64) + 0.5) as u8
+        let (low, high) = (f64::from(low[channel]), f64::from(high[channel]));
+        (low + (high - low) * (place - below as f64) + 0.5) as u8
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lightness_rises_with_the_amount() {
+        let luma = |[red, green, blue]: [u8; 3]| 2 * u32::from(red) + 7 * u32::from(green) + u32::from(blue);
+        let all = MAGMA.map(luma);
+        assert!(all.is_sorted(), "{all:?}");
+    }
 
     #[test]
     fn nothing_is_dark_and_the_largest_is_bright() {

@@ -42,7 +42,7 @@ pub use file::{
 };
 pub use fitting::{Fitting, PictureSize};
 pub use format::{Format, UnknownFormat};
-pub use heat_map::HeatMap;
+pub use heat_map::{HeatMap, MAGMA};
 pub use mosaic::mosaic;
 pub use orientation::Orientation;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
