@@ -173,8 +173,13 @@ fn noise() -> (Report, Vec<Evidence>) {
     for frame in &mut report.frames {
         frame.comparison = Comparison::of_frames(&expected, &found);
     }
-    let kept =
-        |index| Evidence { index, input: input.clone(), found: found.clone(), expected: expected.clone() };
+    let kept = |index| Evidence {
+        index,
+        input: input.clone(),
+        found: found.clone(),
+        expected: expected.clone(),
+        missing: Vec::new(),
+    };
     (report, (0..16).map(kept).collect())
 }
 
@@ -199,7 +204,13 @@ fn of_many_frames_the_first_that_differ_keep_their_maps_and_what_is_left_out_is_
     let (mut report, _) = made::fail();
     report.frames = (0..3000).map(|number| made::equal_frame((number, "builtin:grey"))).collect();
     let mut evidence: Vec<_> = (0..3000)
-        .map(|index| Evidence { index, input: input.clone(), found: right.clone(), expected: right.clone() })
+        .map(|index| Evidence {
+            index,
+            input: input.clone(),
+            found: right.clone(),
+            expected: right.clone(),
+            missing: Vec::new(),
+        })
         .collect();
     for index in [0, 2, 2999] {
         report.frames[index].comparison = Comparison::of_frames(&right, &wrong);

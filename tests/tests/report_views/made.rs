@@ -122,7 +122,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
         not_exercised: Vec::new(),
         ..pass()
     };
-    (report, vec![Evidence { index: 1, input, found, expected }])
+    (report, vec![Evidence { index: 1, input, found, expected, missing: Vec::new() }])
 }
 
 /// The board never answered.

@@ -4,13 +4,16 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use halfrow::compare::Comparison;
 use halfrow::report;
-use halfrow::result::Evidence;
+use halfrow::result::{Evidence, Report};
+use halfrow_model::Frame;
 
 use crate::made;
 
 /// Colours of the scale.
 const EQUAL: [u8; 3] = [0x17, 0x17, 0x20];
 const FROM_8: [u8; 3] = [0xdc, 0x46, 0x6a];
+/// Sky blue of M. Okabe and K. Ito, "Color Universal Design", 2002.
+const MISSING: [u8; 3] = [86, 180, 233];
 
 /// Width, height and pixels of the picture with the description `alt`.
 fn picture(page: &str, alt: &str) -> (u32, u32, Vec<[u8; 3]>) {
@@ -30,7 +33,7 @@ fn each_pixel_of_the_map_of_a_large_frame_shows_the_largest_difference_of_its_ei
     let expected = made::sized_frame(256, 72, |_, _| 100);
     let found = made::sized_frame(256, 72, |row, column| if row == 3 && column < 5 { 116 } else { 100 });
     report.frames[1].comparison = Comparison::of_frames(&expected, &found);
-    evidence[0] = Evidence { index: 1, input: expected.clone(), found, expected };
+    evidence[0] = Evidence { index: 1, input: expected.clone(), found, expected, missing: Vec::new() };
     let page = report::html(&report, &evidence).unwrap();
     let (width, height, pixels) = picture(&page, "Map of differences");
     assert_eq!((width, height), (32, 9));
@@ -78,4 +81,44 @@ fn the_bars_count_the_differences_by_row_and_by_column() {
     assert!(page.contains("M0 3h100v1h-100z"), "row 3 has all five");
     let columns: String = (0..5).map(|column| format!("M{column} 0v100h1v-100z")).collect();
     assert!(page.contains(&columns), "columns 0 to 4 have one each");
+}
+
+/// Takes rows away from the only frame that was kept.
+fn without_rows(report: &mut Report, kept: &mut Evidence, missing: &[usize]) {
+    let Evidence { found, expected, .. } = &*kept;
+    let mut samples = found.samples().to_vec();
+    let mut comparison = Comparison::new(found.width(), found.height());
+    for row in 0..found.height() {
+        if missing.contains(&row) {
+            samples[row * found.width()..][..found.width()].fill(0);
+        } else {
+            comparison.row(row, expected.row(row), found.row(row));
+        }
+    }
+    report.frames[1].rows = found.height() - missing.len();
+    report.frames[1].comparison = comparison;
+    kept.found = Frame::new(found.width(), found.depth(), found.phase(), samples).unwrap();
+    kept.missing = missing.to_vec();
+}
+
+/// Nothing is known about them, so they are not shown as black samples that differ.
+#[test]
+fn rows_that_did_not_come_back_have_a_colour_of_their_own() {
+    let (mut report, mut evidence) = made::fail();
+    assert!(!report::html(&report, &evidence).unwrap().contains("did not come back"));
+    without_rows(&mut report, &mut evidence[0], &[2, 39]);
+    let page = report::html(&report, &evidence).unwrap();
+    let map = picture(&page, "Map of differences").2;
+    let crop = picture(&page, "Difference, colours as in the map").2;
+    for (pixels, width) in [(&map, 64), (&crop, 48)] {
+        let colour = |row, column| match (row, column) {
+            (2 | 39, _) => MISSING,
+            (3, 0..5) => FROM_8,
+            _ => EQUAL,
+        };
+        assert!((0..pixels.len()).all(|place| pixels[place] == colour(place / width, place % width)));
+    }
+    assert_eq!(page.matches("<h3>Around").count(), 1, "no crop of what did not come back");
+    assert!(page.contains("<h3>Around row 3, column 0: expected 193, found 209</h3>"));
+    assert!(page.contains(r#"background:rgb(86 180 233)"></span> did not come back"#), "{page}");
 }

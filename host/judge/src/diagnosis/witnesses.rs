@@ -140,7 +140,7 @@ impl<'a> Witnesses<'a> {
     }
 }
 
-/// The rows of one frame, which may have only its first rows. A frame that does not fit its tables gives none.
+/// The rows of one frame that came back. It may have only its first rows. A frame that does not fit its tables gives none.
 fn rows<'a>(case: &Case<'a>, evidence: &'a Evidence) -> Vec<Witness<'a>> {
     let uploaded = case.frames.get(evidence.index).and_then(|frame| case.uploaded_as(frame.generation));
     let Some(uploaded) = uploaded.filter(|uploaded| fits(evidence, uploaded.tables.geometry())) else {
@@ -150,14 +150,14 @@ fn rows<'a>(case: &Case<'a>, evidence: &'a Evidence) -> Vec<Witness<'a>> {
     let following = case.evidence.iter().find(|other| other.index == evidence.index + 1);
     let next_frame =
         following.filter(|next| next.input.width() == input.width()).map(|next| next.input.row(0));
-    let witness = |(row, (found, expected)): (usize, (&'a [u16], &'a [u16]))| {
+    let witness = |(row, expected, found): (usize, &'a [u16], &'a [u16])| {
         let differences =
             if found == expected { 0 } else { found.iter().zip(expected).filter(|(f, e)| f != e).count() };
         let frame = evidence.index;
         let next = if row + 1 < input.height() { Some(input.row(row + 1)) } else { next_frame };
         Witness { frame, row, uploaded, input, next, found, expected, differences }
     };
-    evidence.found.rows().zip(evidence.expected.rows()).enumerate().map(witness).collect()
+    evidence.returned().map(witness).collect()
 }
 
 /// Rows without differences, alternately one that differs in another frame and one that differs in none. Both kinds are spread.

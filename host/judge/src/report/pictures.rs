@@ -14,6 +14,7 @@ use crate::frames::preview::{self, RgbImage};
 pub(super) use crop::{Window, windows};
 pub(super) use map::difference_map;
 pub use map::side;
+pub(super) use scale::MISSING;
 pub use scale::{Step, steps_up_to};
 
 /// The width of the narrowest preview that still shows something.
@@ -61,7 +62,7 @@ pub fn developed(frame: &Frame, max_width: usize) -> Result<Vec<u8>, EncodingErr
 /// # Errors
 /// The PNG encoder's.
 pub fn differences(expected: &Frame, found: &Frame) -> Result<Vec<u8>, EncodingError> {
-    Ok(difference_map(expected, found)?.png)
+    Ok(difference_map(expected, found, &[])?.png)
 }
 
 /// The frame as a picture of at most `max_width` columns and `most_bytes` bytes, as large as that allows; none if not even

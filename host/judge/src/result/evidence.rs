@@ -14,6 +14,21 @@ pub struct Evidence {
     pub found: Frame,
     /// The frame that the reference gives.
     pub expected: Frame,
+    /// The rows that did not come back, in ascending order.
+    pub missing: Vec<usize>,
+}
+
+impl Evidence {
+    /// Whether a row did not come back.
+    pub(crate) fn is_missing(&self, row: usize) -> bool {
+        self.missing.binary_search(&row).is_ok()
+    }
+
+    /// The rows that came back: the number of each, what it should be, and what it is.
+    pub(crate) fn returned(&self) -> impl Iterator<Item = (usize, &[u16], &[u16])> {
+        let pairs = self.expected.rows().zip(self.found.rows()).enumerate();
+        pairs.filter(|(row, _)| !self.is_missing(*row)).map(|(row, (expected, found))| (row, expected, found))
+    }
 }
 
 /// How many frames were kept for diagnosis and pictures.

@@ -221,7 +221,8 @@ impl CaseInput {
             comparison,
         });
         if differs {
-            self.evidence.push(Evidence { index: self.frames.len() - 1, input, found, expected });
+            let index = self.frames.len() - 1;
+            self.evidence.push(Evidence { index, input, found, expected, missing: Vec::new() });
         }
     }
 
@@ -230,7 +231,8 @@ impl CaseInput {
         let kept: Vec<_> = self.evidence.iter().map(|evidence| evidence.index).collect();
         for (index, (_, input, expected)) in sound.into_iter().enumerate() {
             if !kept.contains(&index) {
-                self.evidence.push(Evidence { index, input, found: expected.clone(), expected });
+                let found = expected.clone();
+                self.evidence.push(Evidence { index, input, found, expected, missing: Vec::new() });
             }
         }
     }

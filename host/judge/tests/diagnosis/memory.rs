@@ -1,8 +1,10 @@
 //! Lines of the line memory.
 
-use halfrow_model::{BitDepth, Geometry, Interpolant, RowFactor, TableSet};
+use halfrow::compare::Comparison;
+use halfrow::result::Evidence;
+use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, RowFactor, TableSet};
 
-use crate::bench::{Bench, assert_named, fault, narrow, wide};
+use crate::bench::{Bench, assert_named, fault, is_told, narrow, wide};
 use crate::scenes::Random;
 
 #[test]
@@ -11,6 +13,26 @@ fn every_data_line_is_named_with_its_level() {
         let place = format!("line memory, data bit {bit} stuck at {value}");
         assert_named(&narrow(), &format!("stuck-data,bit={bit},value={value}"), &place);
     }
+}
+
+/// Of a row that never came back the board said nothing.
+#[test]
+fn rows_that_never_came_back_contradict_no_suspect() {
+    let bench = narrow();
+    let mut seen = bench.play(Some(fault("stuck-data,bit=5,value=1")));
+    let kept = seen.evidence.last_mut().unwrap();
+    let Evidence { found, expected, .. } = &*kept;
+    let came = 9 * found.width();
+    let samples = [&found.samples()[..came], &vec![0; found.samples().len() - came]].concat();
+    let mut comparison = Comparison::new(found.width(), found.height());
+    (0..9).for_each(|row| comparison.row(row, expected.row(row), found.row(row)));
+    kept.found = Frame::new(found.width(), found.depth(), found.phase(), samples).unwrap();
+    kept.missing = (9..16).collect();
+    let frame = &mut seen.frames[kept.index];
+    (frame.rows, frame.comparison) = (9, comparison);
+    let suspects = bench.judge(&seen);
+    let first = &suspects[0];
+    assert!(is_told(first, "line memory, data bit 5 stuck at 1") && first.explained == 1.0, "{suspects:#?}");
 }
 
 #[test]

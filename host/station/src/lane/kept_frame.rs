@@ -203,7 +203,7 @@ mod tests {
         let expected = Frame::new(8, BitDepth::Twelve, Phase::default(), vec![9; 32]).unwrap();
         let found =
             Frame::new(8, BitDepth::Twelve, Phase::default(), [vec![9; 31], vec![7]].concat()).unwrap();
-        Evidence { index, input: expected.clone(), found, expected }
+        Evidence { index, input: expected.clone(), found, expected, missing: Vec::new() }
     }
 
     #[test]

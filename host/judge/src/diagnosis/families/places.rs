@@ -82,7 +82,7 @@ fn pairs_exchanged<'a>() -> Hypothesis<'a> {
     })
 }
 
-/// Rows that came back black or not at all. Which rows are lost does not follow from the defect.
+/// Rows that came back black. Which rows are lost does not follow from the defect.
 fn lost<'a>(witnesses: &Witnesses<'a>) -> Option<Hypothesis<'a>> {
     let black: BTreeSet<_> =
         witnesses.differing.iter().filter(|row| is_lost(row)).map(|row| row.row).collect();

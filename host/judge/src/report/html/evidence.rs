@@ -174,10 +174,10 @@ fn preview(picture: Option<&Picture>, caption: &str) -> Markup {
 
 /// The map, its charts and the crops, and the bytes of their pictures.
 fn details(frame: &FrameReport, kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
-    let map = pictures::difference_map(&kept.expected, &kept.found)?;
+    let map = pictures::difference_map(&kept.expected, &kept.found, &kept.missing)?;
     let mut used = map.len();
     let mut crops = Vec::new();
-    for window in pictures::windows(&kept.expected, &kept.found, MOST_WINDOWS) {
+    for window in pictures::windows(kept, MOST_WINDOWS) {
         let (markup, bytes) = self::crops(window, kept)?;
         used += bytes;
         crops.push(markup);
@@ -195,16 +195,21 @@ fn details(frame: &FrameReport, kept: &Evidence) -> Result<(Markup, usize), Enco
             @if side == 1 { "|found − expected| of each sample:" }
             @else { "Largest |found − expected| in each " (side) " × " (side) " samples:" }
             @for step in pictures::steps_up_to(frame.comparison.largest) {
-                @let [red, green, blue] = step.colour;
-                " " span.key {
-                    span.swatch style=(format!("background:rgb({red} {green} {blue})")) {} " from " (step.from)
-                }
+                (key(step.colour, &format!("from {}", step.from)))
             }
+            @if !kept.missing.is_empty() { (key(pictures::MISSING, "did not come back")) }
             ". The bars count the differences by row and by column."
         }
         @for crop in crops { (crop) }
     };
     Ok((markup, used))
+}
+
+/// What a colour of the map means.
+fn key([red, green, blue]: [u8; 3], meaning: &str) -> Markup {
+    html! {
+        " " span.key { span.swatch style=(format!("background:rgb({red} {green} {blue})")) {} " " (meaning) }
+    }
 }
 
 /// One window in all three frames, and the bytes of its pictures.

@@ -4,7 +4,7 @@ use halfrow_model::Frame;
 use png::EncodingError;
 
 use super::Picture;
-use super::scale::colour;
+use super::scale::{MISSING, colour};
 use crate::compare::Difference;
 use crate::frames::preview::RgbImage;
 use crate::result::Evidence;
@@ -35,28 +35,29 @@ pub(in crate::report) struct Crops {
     pub(in crate::report) found: Picture,
     /// Where and by how much the last two differ.
     pub(in crate::report) difference: Picture,
-    /// The sample values shown as black and as white: the least and the greatest in all three frames.
+    /// The sample values shown as black and as white: the least and the greatest in all three frames, without rows that did not
+    /// come back.
     pub(in crate::report) range: (u16, u16),
 }
 
 /// Windows around the first differences in reading order, at most `most` of them, and none around a difference that an earlier
 /// window shows.
-pub(in crate::report) fn windows(expected: &Frame, found: &Frame, most: usize) -> Vec<Window> {
+pub(in crate::report) fn windows(evidence: &Evidence, most: usize) -> Vec<Window> {
     let mut windows: Vec<Window> = Vec::new();
-    for difference in differences(expected, found) {
+    for difference in differences(evidence) {
         if windows.len() == most {
             break;
         }
         if !windows.iter().any(|window| window.shows(&difference)) {
-            windows.push(Window::around(difference, expected));
+            windows.push(Window::around(difference, &evidence.expected));
         }
     }
     windows
 }
 
 /// All differences in reading order.
-fn differences<'a>(expected: &'a Frame, found: &'a Frame) -> impl Iterator<Item = Difference> + 'a {
-    expected.rows().zip(found.rows()).enumerate().flat_map(|(row, (expected, found))| {
+fn differences(evidence: &Evidence) -> impl Iterator<Item = Difference> {
+    evidence.returned().flat_map(|(row, expected, found)| {
         let unequal = move |(column, (&expected, &found))| {
             (expected != found).then_some(Difference { row, column, expected, found })
         };
@@ -97,15 +98,21 @@ impl Window {
     /// The PNG encoder's.
     pub(in crate::report) fn crops(self, evidence: &Evidence) -> Result<Crops, EncodingError> {
         let Evidence { input, expected, found, .. } = evidence;
-        let all = || [input, expected, found].into_iter().flat_map(|frame| self.samples(frame));
-        let range = all().fold((u16::MAX, 0), |(least, most), sample| (least.min(sample), most.max(sample)));
+        let is_missing = |place: usize| evidence.is_missing(self.top + place / self.width);
+        let returned = self.samples(found).enumerate().filter(|(place, _)| !is_missing(*place));
+        let sent = [input, expected].into_iter().flat_map(|frame| self.samples(frame));
+        let all = sent.chain(returned.map(|(_, sample)| sample));
+        let range = all.fold((u16::MAX, 0), |(least, most), sample| (least.min(sample), most.max(sample)));
         let grey = |frame| self.picture(self.samples(frame).map(|sample| [level(sample, range); 3]));
-        let pairs = self.samples(expected).zip(self.samples(found));
+        let pairs = self.samples(expected).zip(self.samples(found)).enumerate();
+        let shown = |(place, (expected, found)): (usize, (u16, u16))| {
+            if is_missing(place) { MISSING } else { colour(expected.abs_diff(found)) }
+        };
         Ok(Crops {
             input: grey(input)?,
             expected: grey(expected)?,
             found: grey(found)?,
-            difference: self.picture(pairs.map(|(expected, found)| colour(expected.abs_diff(found))))?,
+            difference: self.picture(pairs.map(shown))?,
             range,
         })
     }

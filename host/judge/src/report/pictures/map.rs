@@ -4,7 +4,7 @@ use halfrow_model::Frame;
 use png::EncodingError;
 
 use super::Picture;
-use super::scale::colour;
+use super::scale::{MISSING, colour};
 use crate::frames::preview::RgbImage;
 
 /// The side of the square of samples that one pixel stands for in the map of a large frame. It keeps a single difference
@@ -20,20 +20,32 @@ pub fn side(samples: usize) -> usize {
 }
 
 /// A map of two frames of one size: each pixel has the colour of the largest difference in its square of [`side`] by [`side`]
-/// samples.
+/// samples. Where none is known and rows are `missing`, it has a colour that stands for these.
 ///
 /// # Errors
 /// The PNG encoder's.
-pub(in crate::report) fn difference_map(expected: &Frame, found: &Frame) -> Result<Picture, EncodingError> {
+pub(in crate::report) fn difference_map(
+    expected: &Frame,
+    found: &Frame,
+    missing: &[usize],
+) -> Result<Picture, EncodingError> {
     let side = side(expected.samples().len());
     let (width, height) = (expected.width().div_ceil(side), expected.height().div_ceil(side));
     let mut largest = vec![0_u16; width * height];
+    let mut has_all = vec![true; height];
     for (row, (expected, found)) in expected.rows().zip(found.rows()).enumerate() {
+        if missing.binary_search(&row).is_ok() {
+            has_all[row / side] = false;
+            continue;
+        }
         let line = largest.iter_mut().skip(row / side * width).take(width);
         for (most, (expected, found)) in line.zip(expected.chunks(side).zip(found.chunks(side))) {
             *most = expected.iter().zip(found).fold(*most, |most, (e, f)| most.max(e.abs_diff(*f)));
         }
     }
-    let data = largest.into_iter().flat_map(colour).collect();
+    let shown = |(place, most): (usize, u16)| {
+        if most > 0 || has_all[place / width] { colour(most) } else { MISSING }
+    };
+    let data = largest.into_iter().enumerate().flat_map(shown).collect();
     Picture::new(&RgbImage { width, height, data })
 }

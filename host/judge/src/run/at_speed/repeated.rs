@@ -53,7 +53,8 @@ pub(in crate::run) struct MadeRows {
 impl MadeRows {
     /// Rows that `made_by` makes of `input` and that were found as `expected`.
     pub(in crate::run) fn right(made_by: Generation, input: Frame, expected: Frame) -> Self {
-        Self { made_by, evidence: Evidence { index: 0, input, found: expected.clone(), expected } }
+        let found = expected.clone();
+        Self { made_by, evidence: Evidence { index: 0, input, found, expected, missing: Vec::new() } }
     }
 
     /// The same with `samples` as the last row; none if they are not a row.

@@ -150,7 +150,8 @@ mod tests {
 
     fn evidence(index: usize, differs: bool) -> Evidence {
         let frame = |sample| Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![sample; 2 * 64]).unwrap();
-        Evidence { index, input: frame(1), found: frame(2 + u16::from(differs)), expected: frame(2) }
+        let found = frame(2 + u16::from(differs));
+        Evidence { index, input: frame(1), found, expected: frame(2), missing: Vec::new() }
     }
 
     /// The indices of the frames that are kept if there is room for `room` of them, and the number left out. `differing`

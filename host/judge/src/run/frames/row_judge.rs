@@ -170,7 +170,7 @@ impl<'a> RowJudge<'a> {
     }
 
     fn frame_done(&mut self, frame: InFlight) {
-        let InFlight { prepared, found, rows, comparison, .. } = frame;
+        let InFlight { prepared, found, returned, rows, comparison } = frame;
         let Prepared { name, number, generation, sha256, input, expected, centre } = prepared;
         self.seen.shown.note(&input, &expected, centre);
         let (is_whole, budget) = (rows >= expected.height(), self.options.evidence_bytes);
@@ -179,7 +179,14 @@ impl<'a> RowJudge<'a> {
             let index = self.seen.frames.len();
             self.seen.evidence.offer(&offered, budget, || {
                 let found = as_found(&expected, found)?;
-                Some(Evidence { index, input: (*input).clone(), found, expected: (*expected).clone() })
+                let missing = (0..returned.len()).filter(|&row| !returned[row]).collect();
+                Some(Evidence {
+                    index,
+                    input: (*input).clone(),
+                    found,
+                    expected: (*expected).clone(),
+                    missing,
+                })
             });
         }
         let now = Instant::now();
@@ -355,6 +362,21 @@ mod tests {
             seen.frames.iter().map(|frame| (frame.rows, frame.comparison.differences)).collect();
         assert_eq!(found, [(4, 128), (4, 0)]);
         assert_eq!(seen.latency.unwrap().rows, 8);
+    }
+
+    #[test]
+    fn a_frame_that_did_not_come_back_whole_is_kept_with_the_rows_that_are_missing() {
+        let (sender, source) = channel();
+        sender.send(Ok(frame(7))).unwrap();
+        drop(sender);
+        let mut seen = Observations::default();
+        let timing = FrameTiming::Gaps { seed: 0 };
+        let options = JudgeOptions { evidence_bytes: 1 << 20, ..options() };
+        let mut judge = RowJudge::new(source.iter().take(1), &mut seen, options, timing, &Silent);
+        judge.next_frame().unwrap();
+        [(0, 7), (2, 6)].into_iter().for_each(|(row, sample)| give(&mut judge, 7, row, sample));
+        judge.finish().unwrap();
+        assert_eq!(seen.evidence.all()[0].missing, [1, 3]);
     }
 
     /// No frame behind it is sent, so that all that comes back is right.
