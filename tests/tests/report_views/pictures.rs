@@ -122,3 +122,28 @@ fn rows_that_did_not_come_back_have_a_colour_of_their_own() {
     assert!(page.contains("<h3>Around row 3, column 0: expected 193, found 209</h3>"));
     assert!(page.contains(r#"background:rgb(86 180 233)"></span> did not come back"#), "{page}");
 }
+
+/// Of 256 x 72 samples, 4 x 256 came back.
+#[test]
+fn the_legend_of_a_large_frame_is_the_maps_however_few_rows_came_back() {
+    let (mut report, mut evidence) = made::fail();
+    let expected = made::sized_frame(256, 72, |_, _| 100);
+    let found = made::sized_frame(256, 72, |row, column| if row == 3 && column < 5 { 116 } else { 100 });
+    evidence[0] = Evidence { index: 1, input: expected.clone(), found, expected, missing: Vec::new() };
+    without_rows(&mut report, &mut evidence[0], &(4..72).collect::<Vec<_>>());
+    let page = report::html(&report, &evidence).unwrap();
+    assert!(page.contains("in each 8 × 8 samples:"));
+    assert!(page.contains("Differences in each 8 rows: at most 5"));
+    let pixels = picture(&page, "Map of differences").2;
+    assert_eq!((pixels[0], pixels[1], pixels[32]), (FROM_8, MISSING, MISSING));
+}
+
+/// Of later frames of a run they are not kept.
+#[test]
+fn the_bars_do_not_need_the_counts_of_the_report() {
+    let (mut report, evidence) = made::fail();
+    let page = report::html(&report, &evidence).unwrap();
+    let counts = &mut report.frames[1].comparison;
+    (counts.by_row, counts.by_column) = (Vec::new(), Vec::new());
+    assert_eq!(report::html(&report, &evidence).unwrap(), page);
+}

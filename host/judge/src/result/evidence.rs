@@ -3,6 +3,8 @@
 use halfrow_model::Frame;
 use serde::{Deserialize, Serialize};
 
+use crate::compare::Comparison;
+
 /// A frame that was kept: what went in, what came out and what should have.
 #[derive(Clone, Debug)]
 pub struct Evidence {
@@ -28,6 +30,13 @@ impl Evidence {
     pub(crate) fn returned(&self) -> impl Iterator<Item = (usize, &[u16], &[u16])> {
         let pairs = self.expected.rows().zip(self.found.rows()).enumerate();
         pairs.filter(|(row, _)| !self.is_missing(*row)).map(|(row, (expected, found))| (row, expected, found))
+    }
+
+    /// Compares the rows that came back.
+    pub(crate) fn compared(&self) -> Comparison {
+        let mut comparison = Comparison::new(self.expected.width(), self.expected.height());
+        self.returned().for_each(|(row, expected, found)| comparison.row(row, expected, found));
+        comparison
     }
 }
 

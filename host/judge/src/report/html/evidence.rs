@@ -81,8 +81,8 @@ fn differs((_, frame): &FrameEvidence<'_>) -> bool {
 /// The maps and crops of the first frames that differ, and the bytes of their pictures.
 fn all_details(shown: &[FrameEvidence<'_>]) -> Result<(impl Iterator<Item = Markup>, usize), EncodingError> {
     let (mut all, mut used) = (Vec::new(), 0);
-    for (kept, frame) in shown.iter().filter(|kept| differs(kept)) {
-        let (details, bytes) = details(frame, kept)?;
+    for (kept, _) in shown.iter().filter(|kept| differs(kept)) {
+        let (details, bytes) = details(kept)?;
         if used + bytes > MOST_OF_DETAILS {
             break;
         }
@@ -173,7 +173,7 @@ fn preview(picture: Option<&Picture>, caption: &str) -> Markup {
 }
 
 /// The map, its charts and the crops, and the bytes of their pictures.
-fn details(frame: &FrameReport, kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
+fn details(kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
     let map = pictures::difference_map(&kept.expected, &kept.found, &kept.missing)?;
     let mut used = map.len();
     let mut crops = Vec::new();
@@ -182,19 +182,20 @@ fn details(frame: &FrameReport, kept: &Evidence) -> Result<(Markup, usize), Enco
         used += bytes;
         crops.push(markup);
     }
-    let (rows, columns) = (&frame.comparison.by_row, &frame.comparison.by_column);
-    let side = pictures::side(frame.comparison.samples);
+    // The report on the frame need not have the counts by row and column.
+    let comparison = kept.compared();
+    let side = pictures::side(kept.expected.samples().len());
     let markup = html! {
         h3 { "Where it differs" }
         div.map {
             img.samples src=(map.data_uri()) width=(map.width) height=(map.height) alt="Map of differences";
-            (charts::by_row(rows, side))
-            (charts::by_column(columns, side))
+            (charts::by_row(&comparison.by_row, side))
+            (charts::by_column(&comparison.by_column, side))
         }
         p.legend {
             @if side == 1 { "|found − expected| of each sample:" }
             @else { "Largest |found − expected| in each " (side) " × " (side) " samples:" }
-            @for step in pictures::steps_up_to(frame.comparison.largest) {
+            @for step in pictures::steps_up_to(comparison.largest) {
                 (key(step.colour, &format!("from {}", step.from)))
             }
             @if !kept.missing.is_empty() { (key(pictures::MISSING, "did not come back")) }
