@@ -7,7 +7,9 @@ use axum::response::{IntoResponse as _, Response};
 use halfrow::frames::{self, ReadOptions};
 use halfrow::model::{BitDepth, Frame};
 use halfrow::report::pictures;
+use halfrow::result::FrameReport;
 use maud::{Markup, html};
+use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::evidence::attached;
@@ -114,24 +116,22 @@ fn section(
                     }
                 }
             }
-            @if let Some(comparison) = known.and_then(|known| known.get("comparison")) { (legend(visit, comparison)) }
+            @if let Some(known) = known { (legend(visit, known)) }
         }
     }
 }
 
 /// What the colours of the last picture mean.
-fn legend(visit: &Visit, comparison: &Value) -> Markup {
-    let number = |key: &str| comparison.get(key).and_then(Value::as_u64).unwrap_or_default();
-    let side = pictures::side(usize::try_from(number("samples")).unwrap_or(usize::MAX));
-    let squares = match side {
+fn legend(visit: &Visit, known: &Value) -> Markup {
+    let Ok(frame) = FrameReport::deserialize(known) else { return Markup::default() };
+    let squares = match pictures::side(samples(&frame)) {
         1 => visit.say("pictures.samples").to_owned(),
         side => visit.words.fill("pictures.squares", &[("side", &side.to_string())]),
     };
-    let largest = u16::try_from(number("largest")).unwrap_or(u16::MAX);
     html! {
         p.soft {
             (visit.say("pictures.difference")) (visit.say("told.colon")) (squares)
-            @for step in pictures::steps_up_to(largest) {
+            @for step in pictures::steps_up_to(frame.comparison.largest) {
                 @let [red, green, blue] = step.colour;
                 " " span.key {
                     svg viewBox="0 0 1 1" aria-hidden="true" { rect width="1" height="1" fill=(format!("rgb({red} {green} {blue})")) {} }
@@ -140,6 +140,12 @@ fn legend(visit: &Visit, comparison: &Value) -> Markup {
             }
         }
     }
+}
+
+/// The samples of a frame, whether they came back or not.
+fn samples(frame: &FrameReport) -> usize {
+    let width = frame.comparison.samples.checked_div(frame.rows).unwrap_or_default();
+    width * frame.height()
 }
 
 /// What the report says of a frame.
@@ -166,4 +172,37 @@ fn counted(visit: &Visit, known: &Value) -> Option<String> {
         ("found", &found),
     ];
     Some(visit.words.fill("pictures.differing", &values))
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow::compare::Comparison;
+    use halfrow::model::Phase;
+    use halfrow::result::FrameTiming;
+
+    use super::*;
+
+    #[test]
+    fn rows_that_did_not_come_back_belong_to_the_frame_too() {
+        let mut comparison = Comparison::new(256, 72);
+        (0..4).for_each(|row| comparison.row(row, &[0; 256], &[1; 256]));
+        let mut frame = FrameReport {
+            name: String::new(),
+            number: 0,
+            sha256: String::new(),
+            phase: Phase::default(),
+            generation: 2,
+            timing: FrameTiming::LeastBlanking { clocks: 0 },
+            variation: None,
+            comparison,
+            first_rows: None,
+            rows: 4,
+            seconds: 0.0,
+        };
+        assert_eq!(samples(&frame), 256 * 72);
+        // Of a frame that came back whole, the counts need not be kept.
+        let whole = Comparison { samples: 256 * 72, ..Comparison::new(0, 0) };
+        (frame.rows, frame.comparison) = (72, whole);
+        assert_eq!(samples(&frame), 256 * 72);
+    }
 }
