@@ -110,6 +110,10 @@ fn rows_that_did_not_come_back_have_a_colour_of_their_own() {
     let page = report::html(&report, &evidence).unwrap();
     let map = picture(&page, "Map of differences").2;
     let crop = picture(&page, "Difference, colours as in the map").2;
+    let (_, _, found) = picture(&page, "Found");
+    assert!(
+        found.chunks(48).enumerate().all(|(row, pixels)| pixels.contains(&MISSING) == [2, 39].contains(&row))
+    );
     for (pixels, width) in [(&map, 64), (&crop, 48)] {
         let colour = |row, column| match (row, column) {
             (2 | 39, _) => MISSING,

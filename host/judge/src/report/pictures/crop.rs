@@ -99,20 +99,20 @@ impl Window {
     pub(in crate::report) fn crops(self, evidence: &Evidence) -> Result<Crops, EncodingError> {
         let Evidence { input, expected, found, .. } = evidence;
         let is_missing = |place: usize| evidence.is_missing(self.top + place / self.width);
-        let returned = self.samples(found).enumerate().filter(|(place, _)| !is_missing(*place));
+        let found_at = || self.samples(found).enumerate();
+        let returned = found_at().filter(|(place, _)| !is_missing(*place));
         let sent = [input, expected].into_iter().flat_map(|frame| self.samples(frame));
         let all = sent.chain(returned.map(|(_, sample)| sample));
         let range = all.fold((u16::MAX, 0), |(least, most), sample| (least.min(sample), most.max(sample)));
-        let grey = |frame| self.picture(self.samples(frame).map(|sample| [level(sample, range); 3]));
-        let pairs = self.samples(expected).zip(self.samples(found)).enumerate();
-        let shown = |(place, (expected, found)): (usize, (u16, u16))| {
-            if is_missing(place) { MISSING } else { colour(expected.abs_diff(found)) }
-        };
+        let grey = |sample| [level(sample, range); 3];
+        let came = |place: usize, colour| if is_missing(place) { MISSING } else { colour };
+        let differs =
+            |((place, found), expected): ((usize, u16), u16)| came(place, colour(expected.abs_diff(found)));
         Ok(Crops {
-            input: grey(input)?,
-            expected: grey(expected)?,
-            found: grey(found)?,
-            difference: self.picture(pairs.map(shown))?,
+            input: self.picture(self.samples(input).map(grey))?,
+            expected: self.picture(self.samples(expected).map(grey))?,
+            found: self.picture(found_at().map(|(place, sample)| came(place, grey(sample))))?,
+            difference: self.picture(found_at().zip(self.samples(expected)).map(differs))?,
             range,
         })
     }
