@@ -160,8 +160,7 @@ pub(super) fn shortened(name: &OsStr) -> &OsStr {
 /// Clears `folder` of what killed runs left in it. Streams that are worth keeping get a name that is free; these names are
 /// returned. What cannot be identified or removed stays.
 pub(super) fn clean(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    entries.filter(is_one_of_ours).filter_map(|entry| clear(&entry.path())).collect()
+    ours(folder).filter_map(|entry| clear(&entry.path())).collect()
 }
 
 /// Removes files from `folder` that were worth nothing until they were whole, that nobody holds, and that were last written at least
@@ -173,9 +172,13 @@ pub(super) fn clean_older(folder: &Path, age: Duration) {
         written.and_then(|written| written.elapsed().ok()).is_some_and(|past| past >= age)
     };
     let is_aside = |entry: &DirEntry| entry.file_name().as_bytes().ends_with(ASIDE.as_bytes());
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let left = entries.filter(|entry| is_aside(entry) && is_one_of_ours(entry) && is_old(entry));
+    let left = ours(folder).filter(|entry| is_aside(entry) && is_old(entry));
     left.for_each(|entry| drop(clear(&entry.path())));
+}
+
+/// What runs write in `folder`, or have left there.
+fn ours(folder: &Path) -> impl Iterator<Item = DirEntry> {
+    fs::read_dir(folder).into_iter().flatten().flatten().filter(is_one_of_ours)
 }
 
 fn clear(path: &Path) -> Option<PathBuf> {
