@@ -138,7 +138,7 @@ pub fn yields(of: &Snapshot, wanted: &Wanted, by: By) -> Result<Yields, StoreErr
             counts.adjust(unit.first_passed, unit.last_passed);
             counts.waived += u64::from(waived.contains_key(&unit.last));
             if unit.is_flip() {
-                flips.push(unit.flip(serial_of(of, &unit.unit)?));
+                flips.push(unit.flip());
             }
         }
     }
@@ -248,7 +248,7 @@ fn counted(row: &Found<'_>, plans: &BTreeMap<String, PlanName>) -> Result<(DayCe
 /// A unit that was judged more than once.
 struct Again {
     cell: DayCell,
-    unit: String,
+    serial: String,
     first: String,
     first_ms: i64,
     first_passed: bool,
@@ -263,10 +263,10 @@ impl Again {
         !self.first_passed && self.last_passed
     }
 
-    fn flip(&self, serial: String) -> Flip {
+    fn flip(&self) -> Flip {
         Flip {
             plan: self.cell.plan.clone(),
-            serial,
+            serial: self.serial.clone(),
             failed: self.first.clone(),
             failed_ms: self.first_ms,
             passed: self.last.clone(),
@@ -284,7 +284,7 @@ fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>
         let cell = DayCell { plan, station: row.get(2)?, lane: row.get(3)?, day: first_ms / DAY_MS };
         Ok(Again {
             cell,
-            unit: row.get(0)?,
+            serial: row.get(0)?,
             judgements: count(row, 4)?,
             first: row.get(5)?,
             first_ms,
@@ -295,11 +295,6 @@ fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>
         })
     })?;
     Ok(rows)
-}
-
-fn serial_of(of: &Snapshot, unit: &str) -> Result<String, StoreError> {
-    let serials = of.rows("to tell a unit", statements::SERIAL_OF, values![unit], |row| row.get(0))?;
-    Ok(serials.into_iter().next().unwrap_or_default())
 }
 
 /// Every waived FAIL with its cell, when it began, and whether its unit was judged only once.

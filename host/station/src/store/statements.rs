@@ -100,7 +100,6 @@ statements! {
     pub(crate) COUNTS = "counts.sql";
     pub(crate) FAILED_RUNS = "failed-runs.sql";
     pub(crate) RETESTS = "retests.sql";
-    pub(crate) SERIAL_OF = "serial-of.sql";
     pub(crate) WAIVED = "waived.sql";
     pub(crate) FAILURES = "failures.sql";
     pub(super) ADD_BINDING = "add-binding.sql";

@@ -1,1 +1,0 @@
-SELECT serial FROM unit WHERE id = $1;
