@@ -19,8 +19,8 @@ kinds AS MATERIALIZED (
 )
 SELECT id FROM job
 WHERE state IN ('waiting', 'claimed')
-  AND (state = 'waiting' OR until_ms < {now_ms})
-  AND attempts < 5
+  AND (state = 'waiting' OR {is_lapsed})
+  AND NOT {is_spent}
   AND plan_sha256 = ANY (string_to_array($3, ' '))
   AND string_to_array(needs, ' ') <@ string_to_array($5, ' ')
   AND (

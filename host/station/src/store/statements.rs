@@ -12,8 +12,21 @@ pub(super) const SCHEMAS: [&str; 7] = [
     include_str!("../../sql/schema-7.sql"),
 ];
 
-/// Words of a plant's statements about boards. Earlier ones use later ones.
-pub(super) const OF_BOARDS: [(&str, &str); 8] = [
+/// Words of a plant's statements about jobs and boards. Earlier ones use later ones.
+pub(super) const OF_PLANT: [(&str, &str); 13] = [
+    // How it stands with a job. The end of its lease is not written down before its next claim.
+    (
+        "{job_state}",
+        "CASE WHEN {is_exhausted} THEN 'dead' WHEN {is_lapsed} THEN 'waiting' ELSE job.state END",
+    ),
+    // Why it was given up then.
+    ("{exhausted}", "'it was claimed five times, and no run of it was judged'"),
+    // Whether it was claimed for the last time, and never came back.
+    ("{is_exhausted}", "({is_lapsed} AND {is_spent})"),
+    // Whether whoever claimed it last has lost it.
+    ("{is_lapsed}", "(job.state = 'claimed' AND job.until_ms < {now_ms})"),
+    // Whether it may not be claimed again.
+    ("{is_spent}", "(job.attempts >= 5)"),
     // Whether a board is free.
     ("{free}", "(board.holder IS NULL OR board.until_ms < {now_ms})"),
     // Whether the last run of its unit was no ERROR of the last ten minutes.
@@ -226,7 +239,7 @@ mod tests {
         // Wherever its lines are broken.
         let squeezed = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         let all: Vec<_> = ALL.iter().map(|text| squeezed(text)).collect();
-        for (word, meaning) in OF_BOARDS {
+        for (word, meaning) in OF_PLANT {
             assert!(all.iter().any(|text| text.contains(word)), "{word}");
             assert!(!all.iter().any(|text| text.contains(&squeezed(meaning))), "{meaning}");
         }

@@ -14,7 +14,7 @@ pub(crate) use self::postgres::Postgres;
 pub(crate) use sqlite::Sqlite;
 pub(crate) use value::{FromValue, Value, values};
 
-use super::statements::OF_BOARDS;
+use super::statements::OF_PLANT;
 
 /// An error of an engine.
 #[derive(Debug, thiserror::Error)]
@@ -152,13 +152,13 @@ pub(crate) enum Engine {
 
 impl Engine {
     /// A schema, or a statement of a plant, with its words in braces replaced: the engine's types for whole and for other
-    /// numbers, its mark of strict tables, and what is said [of shared boards](OF_BOARDS), which only a plant has.
+    /// numbers, its mark of strict tables, and what is said [of jobs and boards](OF_PLANT), which only a plant has.
     pub(crate) fn words(self, text: &str) -> String {
         let [int, real, strict] = match self {
             Self::Sqlite => ["INTEGER", "REAL", " STRICT"],
             Self::Postgres => ["BIGINT", "DOUBLE PRECISION", ""],
         };
-        let words = OF_BOARDS.into_iter().chain([("{int}", int), ("{real}", real), ("{strict}", strict)]);
+        let words = OF_PLANT.into_iter().chain([("{int}", int), ("{real}", real), ("{strict}", strict)]);
         words.fold(text.to_owned(), |text, (word, meaning)| text.replace(word, meaning))
     }
 }

@@ -7,7 +7,7 @@ use std::thread;
 use halfrow::Verdict;
 use halfrow_station::check::check_plant;
 use halfrow_station::record::{JobClaim, Record, RunCause};
-use halfrow_station::store::{Claim, Entry, Kind, Parcel, Plant, Snapshot, Wanted, Worker};
+use halfrow_station::store::{Claim, Entry, JobState, Kind, Parcel, Plant, Snapshot, Wanted, Worker, jobs};
 
 use super::{any, board, job, plan, run_out, shared, with_a_job, worker};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
@@ -162,6 +162,27 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     assert_eq!(counts, server.rows("SELECT max(id) FROM run").concat().pop());
     let verdicts = server.rows("SELECT verdict FROM run ORDER BY id");
     assert_eq!(verdicts, [["ERROR"], ["ERROR"], [Verdict::Fail.to_string().as_str()]]);
+}
+
+/// Nobody else asks for a job, so that nothing is written down of the lease that ran out.
+#[test]
+fn a_job_is_listed_as_what_the_next_claim_makes_of_it() {
+    let (server, mut plant, id) = with_a_job();
+    for (claims, expected) in [(1, JobState::Waiting), (4, JobState::Dead)] {
+        for _ in 0..claims {
+            run_out(&server);
+            plant.claim(&worker("away")).unwrap().unwrap();
+        }
+        run_out(&server);
+        let now = Snapshot::of_plant(Plant::connect(&server.address()).unwrap()).unwrap();
+        for state in [JobState::Waiting, JobState::Claimed, JobState::Done, JobState::Dead] {
+            let listed: Vec<_> = jobs(&now, &[state], "", 9).unwrap().iter().map(|job| job.state).collect();
+            assert_eq!(listed, vec![expected; usize::from(state == expected)], "{state:?}");
+        }
+    }
+    assert_eq!(states(&server), [["claimed", "5"]], "nobody has asked");
+    assert!(plant.retry_job(&id, "engel", "the cable is new").unwrap());
+    assert!(plant.claim(&worker("12")).unwrap().is_some());
 }
 
 /// A plant whose job was claimed as often as this before the plant was put back to when nobody had claimed it, and the last claim.
