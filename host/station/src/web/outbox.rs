@@ -15,7 +15,7 @@ use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::said::Said;
-use crate::store::{DEAD_SHOWN, Dead, Entry, Kind, Reason, Unsent};
+use crate::store::{DEAD_SHOWN, Dead, Entry, Kind, Reason, Store, Unsent};
 
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/outbox", Who::Reader, page), act("/outbox/{id}/release", Who::Engineer, release)]
@@ -81,6 +81,7 @@ fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
             p { (show::told(&visit.words.tell(said))) }
             @if visit.may(Who::Engineer) {
                 (fields(visit))
+                input type="hidden" name="sink" value=(sink);
                 button { (visit.say("outbox.release")) }
             }
         }
@@ -91,18 +92,24 @@ fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
 struct Release {
     #[serde(default)]
     reason: String,
+    /// Where it is tried again; at every sink without it.
+    sink: Option<String>,
 }
 
 async fn release(
     State(app): State<App>,
     visit: Visit,
     Path(id): Path<String>,
-    Form(Release { reason }): Form<Release>,
+    Form(Release { reason, sink }): Form<Release>,
 ) -> Result<Response, Trouble> {
     let reason = Reason::of(&reason)
         .map_err(|error| Trouble::telling(&visit, StatusCode::BAD_REQUEST, &Said::of(&error)))?;
     let operator = visit.name().to_owned();
-    let released = app.change(&visit, move |store| store.release(&id, &operator, &reason)).await?;
+    let release = move |store: &mut Store| match sink {
+        Some(sink) => store.release_at(&sink, &id, &operator, &reason),
+        None => store.release(&id, &operator, &reason),
+    };
+    let released = app.change(&visit, release).await?;
     released.map_err(|error| Trouble::store(&visit, &error))?;
     Ok(Redirect::to("/outbox").into_response())
 }

@@ -1,7 +1,10 @@
 //! What a person does about entries of the outbox. All of it is in the audit.
 
-use super::super::database::values;
+use super::super::database::{Value, values};
 use super::super::{Reason, Store, StoreError, statements as sql};
+
+/// The act in the audit.
+const RELEASE: &str = "release";
 
 impl Store {
     /// Has every sink where the entry of this id waits for a person try it again; the audit keeps who said so, and why. Returns
@@ -10,7 +13,23 @@ impl Store {
     /// # Errors
     /// Like [`Self::sends_to`].
     pub fn release(&mut self, subject: &str, operator: &str, reason: &Reason) -> Result<u64, StoreError> {
-        self.released(sql::OUTBOX_RELEASED, subject, operator, reason)
+        let line: [&str; 4] = [operator, RELEASE, subject, reason];
+        self.released(line, sql::OUTBOX_RELEASED, values![subject, ""])
+    }
+
+    /// Like [`Self::release`], at this sink alone.
+    ///
+    /// # Errors
+    /// Like [`Self::sends_to`].
+    pub(crate) fn release_at(
+        &mut self,
+        sink: &str,
+        subject: &str,
+        operator: &str,
+        reason: &Reason,
+    ) -> Result<u64, StoreError> {
+        let detail = format!("at {sink}: {}", &**reason);
+        self.released([operator, RELEASE, subject, &detail], sql::OUTBOX_RELEASED, values![subject, sink])
     }
 
     /// Has this sink try again all entries that wait for a person; the audit keeps who said so, and why. Returns how many there
@@ -24,12 +43,12 @@ impl Store {
         operator: &str,
         reason: &Reason,
     ) -> Result<u64, StoreError> {
-        self.released(sql::OUTBOX_ALL_RELEASED, sink, operator, reason)
+        let line: [&str; 4] = [operator, RELEASE, sink, reason];
+        self.released(line, sql::OUTBOX_ALL_RELEASED, values![sink])
     }
 
-    fn released(&mut self, text: &str, of: &str, operator: &str, reason: &Reason) -> Result<u64, StoreError> {
-        let line: [&str; 4] = [operator, "release", of, reason];
-        self.audited("what is to be sent again", line, |to| to.execute(text, values![of]))
+    fn released(&mut self, line: [&str; 4], text: &str, of: &[Value<'_>]) -> Result<u64, StoreError> {
+        self.audited("what is to be sent again", line, |to| to.execute(text, of))
     }
 
     /// Sends nothing more to this sink, and forgets what it has; the audit keeps who said so, and why. Returns how many of its

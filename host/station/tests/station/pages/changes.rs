@@ -43,6 +43,27 @@ fn nothing_is_sent_again_without_a_reason_that_fits() {
     assert_eq!(release("looked at").status, 303);
 }
 
+/// The form is below the answer of one sink.
+#[test]
+fn what_waits_at_two_sinks_is_tried_again_where_the_engineer_says() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let run = "018f0000-0000-7000-8000-000000000000";
+    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
+    let waits = "INSERT INTO outbox (sink, kind, subject, attempts, next_ms, dead_ms, said)
+        VALUES ('mes', 'run', $1, 1, 0, 1, 'no'), ('share', 'run', $1, 1, 0, 1, 'no')";
+    database.execute(waits, [run]).unwrap();
+    let engineer = serving.engineer();
+    let form = "<input type=\"hidden\" name=\"sink\" value=\"share\">";
+    let shown = page(&engineer, "/outbox");
+    assert!(shown.contains(form), "{shown}");
+    let fields = [("sink", "share"), ("reason", "looked at")];
+    assert_eq!(engineer.post(&format!("/outbox/{run}/release"), &fields).send().status, 303);
+    assert_eq!(station.query("SELECT sink FROM outbox WHERE dead_ms IS NOT NULL"), ["mes"]);
+    let told = station.query("SELECT subject || ' ' || detail FROM audit WHERE act = 'release'");
+    assert_eq!(told, [format!("{run} at share: looked at")]);
+}
+
 #[test]
 fn an_engineer_waives_a_fail_once_and_with_a_reason_and_everyone_sees_it() {
     let (station, serving, run) = failed();
