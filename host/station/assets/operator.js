@@ -8,8 +8,8 @@ import { isOn, play, turn } from "./sound.js";
 const station = document.getElementById("station").dataset;
 const by = (id) => document.getElementById(id);
 const put = (id, text) => { if (by(id)) by(id).textContent = text; };
-// What did not arrive may have been a lane's barcode, so the next scan is for no lane.
-const UNSENT = { is_taken: false, said: station.unsent, armed: "" };
+const UNSENT = { is_taken: false, said: station.unsent };
+const UNPRESSED = { is_taken: false, said: station.unpressed };
 // In milliseconds: longer than the station accepts anything after the beat that it names.
 const PATIENT = 10000;
 // What each lane showed last.
@@ -20,11 +20,11 @@ let sent = 0, answered = 0, queue = Promise.resolve(), todayIsStale = false, not
 
 // Acts are sent one after another, so that a scan is for the lane whose barcode was scanned just before. Each names the last beat
 // heard when it was made: the station refuses what arrives late, because another board may be there by then.
-function post(path, fields, show) {
+function post(path, fields, show, unsent) {
   const made = beat();
-  if (!made) return refuse(show);
+  if (!made) return refuse(show, unsent);
   queue = queue.then(async () => {
-    if (!beat()) return refuse(show);
+    if (!beat()) return refuse(show, unsent);
     const body = new URLSearchParams({ csrf: station.csrf, beat: made, ...fields() });
     const signal = AbortSignal.timeout(PATIENT);
     try {
@@ -33,14 +33,14 @@ function post(path, fields, show) {
       if (answer.status === 401 && "known" in station) return location.reload();
       show(await answer.json());
     } catch {
-      show(UNSENT);
+      show(unsent);
     }
   });
 }
 
 // A page that is not live takes nothing. The reason may be that the session is over; then the page is loaded anew to log in.
-function refuse(show) {
-  show(UNSENT);
+function refuse(show, unsent) {
+  show(unsent);
   if (!("known" in station)) return;
   fetch("/", { method: "HEAD", redirect: "manual" }).then(({ ok }) => ok || location.reload(), () => {});
 }
@@ -86,11 +86,12 @@ function scan(text, typed) {
     answered += 1;
     counts();
     if (became.counter !== undefined && became.counter !== counter) became = UNSENT;
-    // A label that was refused does not make the choice last longer.
-    if ("armed" in became && (became.is_taken || (became.armed ?? "") !== armed)) arms(became.armed);
+    // A label that was refused does not make the choice last longer. What did not arrive, or was not looked at, may have been a
+    // lane's barcode: then the next scan is for no lane.
+    if (became.is_taken || (became.armed ?? "") !== armed) arms(became.armed);
     if (became.is_other) return location.reload();
     answer(became);
-  });
+  }, UNSENT);
 }
 
 function lane(event, isNews) {
@@ -164,7 +165,7 @@ addEventListener("submit", (event) => {
   const form = event.target;
   if (!form.closest("#station")) return;
   event.preventDefault();
-  if (form.id !== "hand") return post(form.getAttribute("action"), () => ({}), answer);
+  if (form.id !== "hand") return post(form.getAttribute("action"), () => ({}), answer, UNPRESSED);
   const fields = new FormData(form);
   if (fields.get("lane")) arms(fields.get("lane"));
   scan(fields.get("text"), "true");

@@ -210,6 +210,28 @@ fn a_lane_that_was_chosen_too_long_ago_gets_no_scan_and_the_page_says_so() {
     assert_eq!(station.query("SELECT lane FROM run"), ["1"]);
 }
 
+/// A station with too many requests, and then one that is away.
+#[test]
+fn what_was_not_looked_at_chooses_no_lane_and_a_button_is_told_of_as_a_button() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    page.scan("HR:LANE:2", "Enter", Duration::ZERO);
+    page.wait("document.querySelector('#lane-2.armed') !== null");
+    page.evaluate("(window.fetch = async () => new Response('{\"is_taken\": false, \"said\": \"busy\"}', {status: 503}), true)");
+    page.scan("HR:LANE:1", "Enter", Duration::ZERO);
+    let answer = "document.getElementById('answer').textContent";
+    page.wait(&format!("{answer} === 'busy'"));
+    assert_eq!(page.evaluate("document.querySelector('.lane.armed') === null"), true);
+    page.evaluate("(window.fetch = async () => { throw new TypeError('away') }, true)");
+    let button = "<form action=/lanes/1/abort method=post><button id=press></button></form>";
+    page.evaluate(&format!("document.getElementById('floor').insertAdjacentHTML('beforeend', '{button}')"));
+    page.evaluate("document.getElementById('press').click()");
+    page.wait(&format!("{answer} === 'This did not arrive. Press it again.'"));
+    page.scan("HR:LANE:1", "Enter", Duration::ZERO);
+    page.wait(&format!("{answer} === 'The scan did not arrive. Scan the label again.'"));
+}
+
 /// With the keyboard's field open: into the field, by scanners of either kind, and outside it.
 #[test]
 fn no_scan_is_lost_while_the_field_is_open() {
