@@ -178,10 +178,10 @@ fn summed(visit: &Visit, Yields { lines, .. }: &Yields) -> Markup {
     let sum = |of: fn(&crate::history::yields::Yield) -> Rate| {
         lines.iter().map(of).fold((0, 0), |(count, all), rate| (count + rate.count, all + rate.of))
     };
-    let (passed, judged) = sum(|line| line.first_pass);
-    let (errors, _) = sum(|line| line.errors);
-    let (judged_text, errors) = (judged.to_string(), errors.to_string());
-    let first_pass = visit.words.figures(&Rate::new(passed, judged).text());
-    let values = [("judged", judged_text.as_str()), ("first", &first_pass), ("errors", &errors)];
+    let (passed, units) = sum(|line| line.first_pass);
+    let (errors, runs) = sum(|line| line.errors);
+    let first_pass = visit.words.figures(&Rate::new(passed, units).text());
+    let [judged, units, errors] = [runs - errors, units, errors].map(|count| count.to_string());
+    let values = [("judged", &*judged), ("units", &units), ("first", &first_pass), ("errors", &errors)];
     html! { (visit.words.fill("today.counted", &values)) }
 }
