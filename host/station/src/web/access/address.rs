@@ -58,6 +58,10 @@ impl Address {
         } else if !self.listen.ip().is_unspecified() {
             self.hosts.push(self.listen.to_string());
         }
+        // A browser leaves out the port of its scheme (URL standard, section 4.4).
+        let default = if self.is_https { ":443" } else { ":80" };
+        let short = |host: &String| host.strip_suffix(default).map(str::to_owned);
+        self.hosts.extend(self.hosts.iter().filter_map(short).collect::<Vec<_>>());
         self
     }
 
@@ -113,6 +117,26 @@ fn without_port(host: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_browser_that_leaves_out_the_port_of_its_scheme_is_at_the_right_station() {
+        let is_host = |listen: &str, public: Option<&str>, host: &str| {
+            Address::new(listen, public, &["a:80".to_owned()]).unwrap().is_host(host)
+        };
+        for (listen, public, host) in [
+            ("10.0.0.12:80", None, "10.0.0.12"),
+            ("127.0.0.1:80", None, "localhost"),
+            ("[fd00::1]:80", None, "[fd00::1]"),
+            ("127.0.0.1:8612", None, "a"),
+            ("127.0.0.1:8612", Some("https://x:443"), "x"),
+            ("127.0.0.1:8612", Some("http://x:80"), "x"),
+        ] {
+            assert!(is_host(listen, public, host), "{host} at {listen} as {public:?}");
+        }
+        for (public, host) in [("https://x:80", "x"), ("http://x:443", "x"), ("http://x", "127.0.0.1")] {
+            assert!(!is_host("127.0.0.1:8612", Some(public), host), "{host} as {public}");
+        }
+    }
 
     #[test]
     fn only_names_of_this_computer_are_private() {
