@@ -149,6 +149,7 @@ codes::codes! {
     }
     SinkError {
         NoFolder [path] => "sink-without-folder",
+        Shut [path] => "sink-folder-shut",
         ReadOnly [path] => "sink-folder-read-only",
         OtherFile [path] => "sink-has-other-file",
         Unread [path] => "sink-file-unreadable",

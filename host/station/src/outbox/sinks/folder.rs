@@ -30,10 +30,7 @@ const LEFT: Duration = Duration::from_secs(86_400);
 impl FolderSink {
     fn put(&mut self, parcel: &Parcel) -> Result<(), SinkError> {
         let Some(letter) = letter(parcel, self.format)? else { return Ok(()) };
-        // A folder made here would hide the one that is to be mounted.
-        if !self.folder.is_dir() {
-            return Err(SinkError::NoFolder { path: self.folder.clone() });
-        }
+        self.is_there()?;
         if !self.is_clear {
             clear_older(&self.folder, LEFT);
             self.is_clear = true;
@@ -45,6 +42,16 @@ impl FolderSink {
         }
         self.open_to_readers(&path);
         Ok(())
+    }
+
+    /// Refuses a folder that does not exist. One made here would hide the one that is to be mounted.
+    fn is_there(&self) -> Result<(), SinkError> {
+        let path = self.folder.clone();
+        match fs::metadata(&path) {
+            Ok(about) if about.is_dir() => Ok(()),
+            Err(source) if source.kind() != io::ErrorKind::NotFound => Err(SinkError::Shut { path, source }),
+            _ => Err(SinkError::NoFolder { path }),
+        }
     }
 
     fn unwritten(&self, error: WriteAsideError) -> SinkError {
@@ -88,6 +95,23 @@ impl Sink for FolderSink {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_folder_that_may_be_there_is_not_said_to_be_away() {
+        let place = tempfile::tempdir().unwrap();
+        let sink = |name: &str| FolderSink {
+            name: "share".to_owned(),
+            folder: place.path().join(name),
+            format: Format::default(),
+            is_clear: false,
+        };
+        std::os::unix::fs::symlink("loop", place.path().join("loop")).unwrap();
+        assert!(matches!(sink("nothing").is_there(), Err(SinkError::NoFolder { .. })));
+        // As root no folder is shut, but this cannot be reached either.
+        let shut = sink("loop").is_there().unwrap_err();
+        assert!(shut.to_string().contains("ProtectHome="), "{shut}");
+        assert!(matches!(shut.into(), Undelivered::Away(_)), "nothing else need be tried");
+    }
 
     #[test]
     fn a_read_only_folder_is_told_with_what_opens_it_to_the_service() {

@@ -43,6 +43,17 @@ pub(crate) enum SinkError {
         /// The folder.
         path: PathBuf,
     },
+    /// The sink's folder cannot be reached; whether it is there is not known.
+    #[error(
+        "the folder {} cannot be reached; open it and what it lies in to the station's user, and take none below /home, which is \
+         closed to the service (ProtectHome=)", path.display()
+    )]
+    Shut {
+        /// The folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
     /// The station may not write into the sink's folder.
     #[error(
         "the folder {0} is read-only to the station; mount it writable, or let the service write to it: `systemctl edit \
@@ -159,6 +170,7 @@ impl From<SinkError> for Undelivered {
         let said = Said::of(&error);
         match error {
             SinkError::NoFolder { .. }
+            | SinkError::Shut { .. }
             | SinkError::ReadOnly { .. }
             | SinkError::Unreached { .. }
             | SinkError::Certificate(_)
