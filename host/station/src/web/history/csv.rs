@@ -8,9 +8,11 @@ use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse as _, Response};
 use futures_util::stream;
 
+use super::evidence::refused;
 use super::run_filter::RunFilter;
 use crate::export::{self, ExportError, Table};
 use crate::history::runs::{self, Filter, Place};
+use crate::said::Said;
 use crate::store::{Snapshot, StoreError};
 use crate::web::fields::Fields;
 use crate::web::state::App;
@@ -76,13 +78,16 @@ async fn piece(
         let page = runs::page(now, &filter, after.as_ref(), RUNS)?;
         Ok(lines(now, &page, after.is_none()).map(|bytes| (bytes, page.next)))
     };
-    app.look(visit, written).await?.map_err(|error| Trouble::broken(visit, &error))
+    app.look(visit, written).await?.map_err(|error| refused(visit, error))
 }
 
+/// The lines of a page of runs. The log has the run at which the table ends too early.
 fn lines(now: &Snapshot, page: &runs::Page, is_first: bool) -> Result<Vec<u8>, ExportError> {
     let mut table = if is_first { Table::begin(Vec::new())? } else { Table::further(Vec::new()) };
-    for hash in page.runs.iter().filter_map(|run| run.record_sha256.as_ref()) {
-        table.add(&export::record(now, hash)?.0)?;
+    for (run, hash) in page.runs.iter().filter_map(|run| Some((&run.id, run.record_sha256.as_ref()?))) {
+        let added = export::record(now, hash).and_then(|(record, _)| table.add(&record));
+        added
+            .inspect_err(|error| tracing::error!("a table ends before the run {run}: {}", Said::of(error)))?;
     }
     Ok(table.end())
 }

@@ -77,7 +77,8 @@ pub(super) async fn export(
     Ok(([(CONTENT_TYPE, format.media()), (CONTENT_DISPOSITION, how.as_str())], bytes).into_response())
 }
 
-fn refused(visit: &Visit, error: ExportError) -> Trouble {
+/// Why a run is not exported.
+pub(super) fn refused(visit: &Visit, error: ExportError) -> Trouble {
     match error {
         ExportError::Store(error) => Trouble::store(visit, &error),
         error => Trouble::telling(visit, StatusCode::INTERNAL_SERVER_ERROR, &Said::of(&error)),

@@ -378,11 +378,16 @@ fn a_table_of_a_filter_is_what_the_command_writes() {
 fn a_table_that_cannot_go_on_breaks_off() {
     let made = hundreds();
     let page = halfrow_station::history::runs::page(&made.now(), &Default::default(), None, 400).unwrap();
-    let lost = page.runs.last().unwrap().record_sha256.clone().unwrap();
+    let [newest, lost] =
+        [page.runs.first(), page.runs.last()].map(|run| run.unwrap().record_sha256.clone().unwrap());
     let served = Served::of(made);
     assert!(served.get("/history.csv").is_whole);
     std::fs::remove_file(served.folder().blobs().path(&lost)).unwrap();
     let broken = served.get("/history.csv");
     assert_eq!(broken.status, 200, "its beginning was right");
     assert!(!broken.is_whole && !broken.body.is_empty());
+    // One that cannot begin says what is damaged.
+    std::fs::write(served.folder().blobs().path(&newest), "damaged").unwrap();
+    let refused = served.get("/history.csv");
+    assert!(refused.status == 503 && refused.text().contains(&newest), "{}", refused.text());
 }
