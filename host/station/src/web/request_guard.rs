@@ -82,7 +82,7 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
 /// Goes around a route: who asks, and whether they may.
 pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next: Next) -> Response {
     let Guarded { app, who, is_act } = guarded;
-    let visit = match bearer(request.headers()) {
+    let visit = match bearer(request.headers()).filter(|_| !app.access().asks_nobody()) {
         None => app.visit(request.headers(), is_act).await.map_err(troubled),
         Some(token) => {
             let peer =

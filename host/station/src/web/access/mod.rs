@@ -154,6 +154,11 @@ impl Access {
         self.address.is_private()
     }
 
+    /// Whether nobody who gets here needs to say who they are.
+    pub(super) fn asks_nobody(&self) -> bool {
+        self.is_open() && !self.has_people()
+    }
+
     /// The user of this cookie, or the one who stands for everybody. It may wait for the disk.
     ///
     /// # Errors

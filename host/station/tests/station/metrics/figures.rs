@@ -52,6 +52,18 @@ fn agrees(station: &Station, figures: &Figures, lane: &str) {
     assert_eq!(figures.at(&format!("halfrow_lane_kills_total{{lane=\"{lane}\"}}")), 0.0);
 }
 
+/// Whoever collects the figures of many stations sends a token to all of them.
+#[test]
+fn a_station_that_asks_nobody_who_they_are_looks_at_no_token() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    for _ in 0..11 {
+        let asked = serving.here().get("/metrics").with("authorization", "Bearer of-another-station");
+        assert_eq!(asked.send().status, 200);
+    }
+    assert_eq!(station.query("SELECT act FROM audit"), Vec::<String>::new());
+}
+
 #[test]
 fn what_lanes_did_is_counted_and_promtool_finds_nothing_wrong() {
     let station = Station::private(3)
