@@ -112,9 +112,14 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
 /// What the band means, and the days or weeks that are beyond it.
 fn beyond(visit: &Visit, of_plan: &[Yield]) -> Markup {
     let is_beyond = |line: &&Yield| line.limits.is_some_and(|limits| limits.is_beyond);
-    let days: Vec<_> = of_plan.iter().take(MOST_DAYS).filter(is_beyond).map(began).collect();
+    let days: Vec<_> = of_plan.iter().filter(is_beyond).take(MOST_LINES).map(began).collect();
     html! {
-        p.soft { (visit.say("yield.band")) }
+        p.soft {
+            (visit.say("yield.band"))
+            @if of_plan.len() > MOST_DAYS {
+                " " (visit.words.fill("yield.drawn", &[("columns", &MOST_DAYS.to_string())]))
+            }
+        }
         @if !days.is_empty() { p.beyond { (visit.words.fill("yield.beyond", &[("days", &days.join(visit.say("told.list")))])) } }
     }
 }

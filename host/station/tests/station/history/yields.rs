@@ -4,7 +4,7 @@ use halfrow_station::history::Period;
 use halfrow_station::history::yields::{By, Wanted, Yields, yields};
 use halfrow_station::record::RunCause;
 
-use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run};
 use super::served::Served;
 use crate::common::{now_ms, reason};
 
@@ -205,4 +205,23 @@ fn the_day_so_far_begins_at_midnight_by_the_clock_on_the_wall() {
     }
     let today = Served::in_zone(made, &zone).page("/today");
     assert!(today.contains("today 1 judged"), "{zone}: {today}");
+}
+
+/// Of 70 units five failed, all of them on a day before those that are drawn.
+#[test]
+fn a_day_beyond_the_band_is_named_although_it_is_not_drawn() {
+    let mut made = Made::new();
+    for day in 0..66 {
+        for number in 0..if day == 0 { 5 } else { 1 } {
+            let started_ms = BEGIN_MS + (day - 90) * DAY_MS + number;
+            let end = if day == 0 { End::Fail(&["memory"]) } else { End::Pass };
+            made.run(&Run { started_ms, ..Run::of(&format!("S{day}-{number}"), end) });
+        }
+    }
+    let page = Served::of(made).page("/yield?by=day");
+    assert!(page.contains("Beyond the band: 2026-08-03</p>"), "{page}");
+    assert!(
+        page.contains("Only the newest 60 are drawn") && page.matches("class=\"point\"").count() == 60,
+        "{page}"
+    );
 }
