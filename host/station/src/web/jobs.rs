@@ -98,7 +98,7 @@ fn table(visit: &Visit, jobs: &[Job]) -> Markup {
 fn row(visit: &Visit, job: &Job) -> Markup {
     html! {
         tr {
-            td.when title=(job.id) { (show::moment(job.created_ms)) }
+            td.when title=(job.id) { (show::titled_moment(job.created_ms)) }
             td {
                 @if job.serial.is_empty() { (visit.say("jobs.any")) " " (show::said(&job.kind)) }
                 @else { (show::said(&job.serial)) }

@@ -53,7 +53,7 @@ fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
             tbody { @for Unsent { sink, entries, dead, since_ms, said, .. } in unsent {
                 tr {
                     td { (show::said(sink)) } td.number { (entries) } td.number { (dead) }
-                    td.when { (show::moment(*since_ms)) }
+                    td.when { (show::titled_moment(*since_ms)) }
                     td.headline { @if let Some(said) = said { (show::told(&visit.words.tell(said))) } }
                 }
             } }

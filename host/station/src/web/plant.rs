@@ -62,7 +62,7 @@ fn published(visit: &Visit, plans: &[(Statement, i64)]) -> Markup {
                 tr {
                     td.name { (show::said(&statement.product)) " " (show::said(&statement.name)) }
                     td { b { (show::said(&statement.version)) } } td.number { (statement.number) }
-                    td.when { (show::moment(*at_ms)) } td { (show::said(&statement.operator)) }
+                    td.when { (show::titled_moment(*at_ms)) } td { (show::said(&statement.operator)) }
                     td.headline { (show::said(&statement.reason)) }
                 }
             } }
@@ -77,7 +77,7 @@ fn row(visit: &Visit, station: &Station, ambiguous: &[String]) -> Markup {
             td {
                 @if station.is_there { "● " (visit.say("plant.there")) } @else { "○ " (visit.say("plant.away")) }
             }
-            td.when { (show::moment(station.seen_ms)) }
+            td.when { (show::titled_moment(station.seen_ms)) }
             td.when { @if let Some(last_ms) = station.last_ms { (show::moment(last_ms)) } }
             td.number {
                 (station.unsent)

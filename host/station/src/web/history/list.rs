@@ -131,7 +131,7 @@ fn table(visit: &Visit, runs: &[RunLine]) -> Markup {
 fn row(visit: &Visit, run: &RunLine) -> Markup {
     html! {
         tr {
-            td.when { a href=(show::run_address(&run.id)) { (show::moment(run.started_ms)) } }
+            td.when { a href=(show::run_address(&run.id)) { (show::titled_moment(run.started_ms)) } }
             td.serial { a href=(unit_address(&run.serial)) { (show::said(&run.serial)) } }
             td.outcome { (show::outcome(visit, run)) }
             td.plan { (show::said(&run.plan)) " " (show::said(&run.version)) }

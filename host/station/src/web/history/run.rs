@@ -187,7 +187,7 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
     let board = record.and_then(|record| record.board.as_ref());
     html! {
         dl.facts {
-            (show::pair(visit.say("history.began"), show::moment(line.started_ms)))
+            (show::pair(visit.say("history.began"), show::titled_moment(line.started_ms)))
             @if let Some(seconds) = record.and_then(|record| record.seconds) {
                 (show::pair(visit.say("run.took"), html! { (show::number(visit, (seconds * 10.0).round() / 10.0)) " s" }))
             }

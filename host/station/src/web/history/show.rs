@@ -15,8 +15,13 @@ pub(in crate::web) fn head() -> Markup {
     html! { link rel="stylesheet" href="/assets/history.css"; }
 }
 
-/// A moment to the second, UTC.
+/// A moment to the second, where nothing else says that it is UTC.
 pub(in crate::web) fn moment(ms: i64) -> Markup {
+    html! { (titled_moment(ms)) " UTC" }
+}
+
+/// A moment below or beside a title that says UTC.
+pub(in crate::web) fn titled_moment(ms: i64) -> Markup {
     let Ok(moment) = Timestamp::from_millisecond(ms) else { return html! { (ms) } };
     html! { time datetime=(format!("{moment:.3}")) { (moment.strftime("%Y-%m-%d %H:%M:%S")) } }
 }

@@ -58,6 +58,8 @@ fn runs_that_do_not_count_are_no_judgements_of_a_unit() {
     };
     assert_eq!(told("/unit?serial=HR%3AMOCK%3A1"), [false; 3]);
     assert_eq!(told(&format!("/runs/{}", ids[0])), [false; 3]);
+    // The lanes' page shows local times.
+    assert!(served.page("/unit?serial=S1").contains(">2026-11-01 00:00:00</time> UTC"));
     assert_eq!(served.get("/unit?serial=").status, 404);
     assert!(!served.get("/unit?serial=").text().contains("serial number ."));
     assert!(served.page("/history?serial=S2&serial=S1").contains("/unit?serial=S1"));
