@@ -2,15 +2,12 @@
 
 use rand::{RngExt as _, rng};
 
-/// The first wait, in milliseconds.
-const FIRST_MS: i64 = 1_000;
-/// The longest wait.
-pub(super) const LONGEST_MS: i64 = 300_000;
+use crate::store::{FIRST_WAIT_MS, LONGEST_WAIT_MS};
 
 /// How long to wait after `vain` failed tries and one more, in milliseconds: twice as long each time, and a little
 /// different for each station, so that they do not all come at once when a plant is back.
 pub(super) fn ms(vain: u32) -> i64 {
-    let wait = FIRST_MS.saturating_mul(1 << vain.min(20)).min(LONGEST_MS);
+    let wait = FIRST_WAIT_MS.saturating_mul(1 << vain.min(20)).min(LONGEST_WAIT_MS);
     wait - rng().random_range(0..=wait / 4)
 }
 

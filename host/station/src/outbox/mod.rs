@@ -28,7 +28,9 @@ pub use standing::Standing;
 use crate::clock;
 use crate::guard::guarded;
 use crate::said::Said;
-use crate::store::{Entry, Folder, Parcel, SharedStore, Snapshot, StoreError, Tried, Unsent};
+use crate::store::{
+    Entry, Folder, LONGEST_WAIT_MS, Parcel, SharedStore, Snapshot, StoreError, Tried, Unsent,
+};
 use standing::Backlog;
 
 /// How often to check whether there is something to send.
@@ -97,7 +99,7 @@ pub struct Round {
 /// # Errors
 /// [`StoreError`] when the store cannot be read or written. What was sent is then sent again, which changes nothing.
 pub fn round(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) -> Result<Round, StoreError> {
-    let due = folder(store).due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)?;
+    let due = folder(store).due(sink.name(), clock::now_ms(), LONGEST_WAIT_MS)?;
     let round = given(store, sink, due, |name, entry, why| standing.refused(name, entry, why))?;
     if round.sent + round.failed > 0 && !round.is_away {
         standing.there(sink.name(), round.sent, || left(store, sink));

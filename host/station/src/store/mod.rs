@@ -48,8 +48,8 @@ pub use error::StoreError;
 pub(crate) use folder::ASIDE;
 pub use folder::Folder;
 use generation::{Log, Opened};
-pub(crate) use outbox::DEAD_SHOWN;
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
+pub(crate) use outbox::{DEAD_SHOWN, FIRST_WAIT_MS, LONGEST_WAIT_MS};
 pub use plant::{
     Claim, Introduction, Job, JobState, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError,
     PlantLink, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,

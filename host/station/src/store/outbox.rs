@@ -15,6 +15,12 @@ use crate::record::Record;
 use crate::said::Said;
 use crate::{clock, ids};
 
+/// How long it is waited at most before something is sent for the second time, in milliseconds. Each wait is twice as long as the
+/// one before, up to [`LONGEST_WAIT_MS`].
+pub(crate) const FIRST_WAIT_MS: i64 = 1_000;
+/// The longest wait.
+pub(crate) const LONGEST_WAIT_MS: i64 = 300_000;
+
 /// The plant's name among the sinks. A plant that moves to another address keeps it.
 pub const SINK_OF_PLANT: &str = "plant";
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::super::database::values;
 use super::super::{Snapshot, StoreError, statements as sql};
-use super::{Entry, Kind, entry, said};
+use super::{Entry, FIRST_WAIT_MS, Kind, LONGEST_WAIT_MS, entry, said};
 use crate::ids;
 use crate::said::{Said, as_text, as_text_if_any};
 
@@ -50,7 +50,8 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
     pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
-        self.rows("to tell what is to be sent", sql::OUTBOX_STATE, &[], |row| {
+        let waits = values![FIRST_WAIT_MS, LONGEST_WAIT_MS];
+        self.rows("to tell what is to be sent", sql::OUTBOX_STATE, waits, |row| {
             let since_ms = ids::made_ms(row.text(4)?);
             let (sink, entries, results, dead) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
             Ok(Unsent { sink, entries, results, dead, since_ms, said: said(row, 5)? })
