@@ -122,6 +122,12 @@ impl Live {
         self.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
+    /// What this run does in this lane, as far as it was told.
+    pub(super) fn doing(&self, lane: &str, run: &str) -> Option<Doing> {
+        let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        now.doing.get(lane).filter(|doing| doing.run == run).cloned()
+    }
+
     /// This moment, as pages name it.
     fn moment(&self) -> String {
         format!("{}-{}", self.start, self.begun.elapsed().as_millis())
@@ -243,5 +249,15 @@ mod tests {
             matches!(answer.try_recv(), Err(oneshot::error::TryRecvError::Closed)),
             "it is not waited for"
         );
+    }
+
+    /// A lane that is drawn anew while its run goes on.
+    #[test]
+    fn what_a_run_does_is_known_while_it_does_it_and_is_not_that_of_another_run() {
+        let live = Live::of(Vec::new());
+        let doing = Doing { run: "a".to_owned(), what: "verify".to_owned(), rows: Some((3, 9)) };
+        live.tell(EventKind::Doing("1".to_owned(), doing.clone()));
+        assert_eq!(live.doing("1", "a"), Some(doing));
+        assert_eq!([live.doing("1", "b"), live.doing("2", "a")], [None, None]);
     }
 }

@@ -14,7 +14,7 @@ use tokio::sync::broadcast::Receiver;
 
 use super::lane::LaneEvent;
 use crate::clock;
-use crate::web::live::{Became, Event, EventKind, Now};
+use crate::web::live::{Became, Event, EventKind, Live, Now};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -51,7 +51,7 @@ async fn next(
             if matches!(told.what, EventKind::Beat(_)) && !of.app.access().is_open() {
                 of.app.user(&of.visit, Some(of.visit.session.clone()), false).await.ok()?.ok()??;
             }
-            news(&of.visit, &told)
+            news(&of.app.floor(&of.visit).ok()?.live, &of.visit, &told)
         }
     };
     Some((Ok(text), (None, of)))
@@ -64,14 +64,17 @@ fn snapshot(mark: &str, visit: &Visit, now: &Now) -> String {
     event_text(now.id, "snapshot", &json!({ "mark": mark, "beat": now.beat, "lanes": lanes }))
 }
 
-fn news(visit: &Visit, told: &Event) -> String {
+fn news(live: &Live, visit: &Visit, told: &Event) -> String {
     let id = told.id;
     match &told.what {
         EventKind::Beat(beat) => event_text(id, "beat", &{
             let clock = clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string();
             json!({ "clock": clock, "beat": beat })
         }),
-        EventKind::Lane(state) => event_text(id, "lane", &LaneEvent::new(visit, state, None)),
+        EventKind::Lane(state) => event_text(id, "lane", &{
+            let doing = state.run.as_ref().and_then(|run| live.doing(&state.lane, run));
+            LaneEvent::new(visit, state, doing.as_ref())
+        }),
         EventKind::Doing(lane, doing) => event_text(id, "doing", &{
             let told = super::lane::doing(visit, doing);
             let rows = doing.rows.map(|(done, of)| [done, of]);
