@@ -12,6 +12,7 @@ use serde_json::json;
 use super::history::show;
 use super::language::Sentence;
 use super::layout::{Here, Page};
+use super::routes::Who;
 use super::visit::Visit;
 use crate::said::Said;
 use crate::secret::SecretError;
@@ -41,6 +42,9 @@ impl Trouble {
         match (&visit.user, &visit.untold) {
             (None, Some(why)) => Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, why),
             (None, None) => Self::new(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")),
+            (Some(_), _) if visit.may(Who::Operator) => {
+                Self::new(visit, StatusCode::FORBIDDEN, visit.say("trouble.engineer"))
+            }
             (Some(_), _) => Self::new(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")),
         }
     }

@@ -72,7 +72,8 @@ fn an_engineer_waives_a_fail_once_and_with_a_reason_and_everyone_sees_it() {
     let form = format!("action=\"{act}\"");
     assert!(!page(&operator, &path).contains(&form), "an operator has no such form");
     assert!(page(&engineer, &path).contains(&form));
-    assert_eq!(operator.post(&act, &[("reason", "x")]).send().status, 403);
+    let forbidden = operator.post(&act, &[("reason", "x")]).send();
+    assert!(forbidden.status == 403 && forbidden.text().contains("Only an engineer may"), "{forbidden:?}");
     for (language, said) in [("en", "there is no reason"), ("de", "es fehlt der Grund")] {
         let empty = engineer.post(&act, &[("reason", " ")]).with("accept-language", language).send();
         assert_eq!(empty.status, 400);
