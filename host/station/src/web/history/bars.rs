@@ -2,9 +2,11 @@
 
 use maud::{Markup, html};
 
+use super::show;
 use super::yields::FEW;
 use crate::history::control::Limits;
 use crate::history::rate::Rate;
+use crate::web::visit::Visit;
 
 /// A bar as long as the share, and the 95 % interval over it.
 pub(super) fn share(rate: &Rate) -> Markup {
@@ -50,7 +52,7 @@ pub(super) struct Day {
 
 /// A column for each day of a yield, the earliest first: share and interval, in the band of what they may be. `of` says what
 /// the shares are of.
-pub(super) fn days(of: &str, days: &[Day]) -> Markup {
+pub(super) fn days(visit: &Visit, of: &str, days: &[Day]) -> Markup {
     let low = |day: &Day| day.rate.interval.map(|[low, _]| low);
     let limit = |day: &Day| day.limits.map(|Limits { limits: [low, _], .. }| low);
     // The interval of a day with few units would leave no room for the others; it is cut off where the chart ends.
@@ -65,7 +67,7 @@ pub(super) fn days(of: &str, days: &[Day]) -> Markup {
         svg.days viewBox=(format!("0 0 {width} {HEIGHT}")) height=(HEIGHT) width=(width) role="img" aria-label=(of) {
             @for share in [1.0, f64::midpoint(1.0, floor), floor] {
                 rect.grid x="0" y=(format!("{:.1}", y(share))) width=(days.len() * DAY) height="1" {}
-                text x=(days.len() * DAY + 4) y=(format!("{:.1}", y(share) + 4.0)) { (100.0 * share) " %" }
+                text x=(days.len() * DAY + 4) y=(format!("{:.1}", y(share) + 4.0)) { (show::number(visit, 100.0 * share)) " %" }
             }
             @for (place, one) in days.iter().enumerate() {
                 (day(place * DAY, one, &y))

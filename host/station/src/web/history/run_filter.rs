@@ -24,7 +24,7 @@ pub(super) struct RunFilter {
     pub(super) from: String,
     /// The last day, or the first moment after.
     pub(super) until: String,
-    /// Plan, day or lane of a yield; part or check of failures.
+    /// Plan, day, week, lane or station of a yield; part or check of failures.
     pub(super) by: String,
     /// The place after which the page begins.
     after: String,

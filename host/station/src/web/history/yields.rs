@@ -102,7 +102,7 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
         @for of_plan in lines.chunk_by(|one, other| one.plan == other.plan) {
             figure.days {
                 figcaption { (visit.say("yield.first")) (visit.say("told.colon")) (show::said(&of_plan[0].plan.plan)) }
-                div.wide tabindex="0" { (bars::days(visit.say("yield.first"), &named_days(visit, of_plan))) }
+                div.wide tabindex="0" { (bars::days(visit, visit.say("yield.first"), &named_days(visit, of_plan))) }
                 (beyond(visit, of_plan))
             }
         }
@@ -151,7 +151,7 @@ fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
                     b { (show::said(station)) } " · " (show::said(&plan.product)) " " (show::said(&plan.plan)) (visit.say("told.colon"))
                     (show::share(visit, here)) " " span.soft { (show::of(here)) } " · "
                     (visit.say("yield.elsewhere")) " " (show::share(visit, elsewhere)) " " span.soft { (show::of(elsewhere)) }
-                    @if let Some(chance) = chance { " · p = " (format!("{chance:.1e}")) }
+                    @if let Some(chance) = chance { " · p = " (visit.words.figures(&format!("{chance:.1e}"))) }
                 }
             }
         }
