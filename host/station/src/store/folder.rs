@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use nix::errno::Errno;
 use nix::unistd::{AccessFlags, access};
 use rusqlite::config::DbConfig;
-use rusqlite::{Connection, ErrorCode, OpenFlags};
+use rusqlite::{Connection, ErrorCode, OpenFlags, ffi};
 
 use super::database::Sqlite;
 use super::{Database, DatabaseError, PATIENCE, StoreError, Stored};
@@ -59,6 +59,17 @@ impl Folder {
     /// Refuses a folder that was moved away since the start, or whose disk was unmounted: the start made `blobs` in it.
     pub(crate) fn refuse_gone(&self) -> Result<(), StoreError> {
         fs::metadata(self.0.join("blobs")).map(drop).map_err(|source| self.refused(source))
+    }
+
+    /// Refuses a database that is no file, such as a pipe: to open it could take for ever.
+    pub(super) fn refuse_pipe(&self) -> Result<(), StoreError> {
+        let path = self.database();
+        if fs::metadata(&path).is_ok_and(|about| !about.is_file() && !about.is_dir()) {
+            let (code, said) = (ffi::Error::new(ffi::SQLITE_NOTADB), "it is no file, but a pipe or a device");
+            let no_file = rusqlite::Error::SqliteFailure(code, Some(said.to_owned()));
+            return Err(StoreError::of_file(&path, "to be opened", no_file));
+        }
+        Ok(())
     }
 
     /// Refuses a folder that has evidence and no database: no station may start from scratch there.
@@ -149,6 +160,7 @@ impl Folder {
 
     /// A connection that cannot write.
     pub(super) fn reader(&self) -> Result<Box<dyn Database>, StoreError> {
+        self.refuse_pipe()?;
         let path = self.database();
         let opened = self.opened_to_read().map_err(|source| match self.refuse_gone() {
             Err(gone) if !path.exists() => gone,

@@ -161,6 +161,7 @@ pub(super) enum Log {
 /// Examines the log that was left in `folder`, in which nobody works, before a connection plays it into the database.
 pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreError> {
     let refused = |source| folder.refused(source);
+    folder.refuse_pipe()?;
     let path = folder.database();
     let found = header(&path).map_err(refused)?;
     let log = fs::metadata(path.with_extension("db-wal"));

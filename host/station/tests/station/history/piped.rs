@@ -42,3 +42,16 @@ fn pipes_in_the_place_of_a_record_and_of_evidence_hold_no_page_up() {
     }
     assert!(served.page("/unit?serial=S1").contains(&id));
 }
+
+#[test]
+fn a_pipe_in_the_place_of_the_database_is_told_and_nobody_waits_for_it() {
+    let folder = Made::new().closed();
+    replaced_by_pipe(&folder.path().join("station.db"));
+    for arguments in [&["yield"][..], &["waive", "x", "--reason", "why not", "--operator", "engel"]] {
+        let mut call = Command::new("timeout");
+        call.arg("120").arg(program()).args(arguments).arg("--data").arg(folder.path());
+        let did: Did = call.output().unwrap().into();
+        assert_eq!(did.code, Some(3), "{did:?}");
+        assert!(did.complained.contains("it is no file, but a pipe"), "{did:?}");
+    }
+}
