@@ -21,7 +21,7 @@ use super::statements::OF_PLANT;
 pub enum DatabaseError {
     /// An error of SQLite.
     #[error(transparent)]
-    Sqlite(#[from] rusqlite::Error),
+    Sqlite(rusqlite::Error),
     /// An error of PostgreSQL, or of the connection to it.
     #[error(transparent)]
     Postgres(#[from] tokio_postgres::Error),
@@ -53,6 +53,19 @@ pub enum DatabaseError {
     /// A text is not the JSON that it should be, or something cannot be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
+}
+
+impl From<rusqlite::Error> for DatabaseError {
+    fn from(error: rusqlite::Error) -> Self {
+        use rusqlite::Error::SqliteFailure;
+        Self::Sqlite(match error {
+            // SQLite has no words for this one, by which alone a full disk is known where a database is opened.
+            SqliteFailure(error, None) if error.extended_code == ffi::SQLITE_IOERR_SHMSIZE => {
+                SqliteFailure(error, Some("the disk has no room for the file station.db-shm".to_owned()))
+            }
+            error => error,
+        })
+    }
 }
 
 impl DatabaseError {
@@ -260,6 +273,13 @@ mod tests {
     use tokio_postgres::{Config, NoTls};
 
     use super::*;
+
+    /// <https://www.sqlite.org/rescode.html#ioerr_shmsize>
+    #[test]
+    fn a_disk_that_is_full_at_the_start_is_told_in_words() {
+        let full = DatabaseError::from(rusqlite::Error::SqliteFailure(ffi::Error::new(4874), None));
+        assert_eq!(full.to_string(), "the disk has no room for the file station.db-shm");
+    }
 
     #[test]
     fn an_error_of_the_connection_means_that_the_engine_is_away_and_one_of_a_text_does_not() {
