@@ -19,12 +19,14 @@ impl Plant {
         subject: &str,
         detail: &str,
     ) -> Result<(), StoreError> {
-        self.audited(operator, act, subject, detail, |_| Ok(1)).map(drop)
+        self.audited("a line of the audit", operator, act, subject, detail, |_| Ok(1)).map(drop)
     }
 
-    /// Carries out `change`, and enters it in the audit if it changed any row. Returns whether it did.
+    /// Carries out `change`, and enters it in the audit if it changed any row. Returns whether it did. `doing` says what the plant
+    /// refuses otherwise.
     pub(super) fn audited(
         &mut self,
+        doing: &'static str,
         operator: &str,
         act: &str,
         subject: &str,
@@ -34,7 +36,7 @@ impl Plant {
         let at_ms = clock::now_ms();
         let id = ids::new(at_ms)?.to_string();
         let line = Line { id: &id, at_ms, operator, act, subject, detail };
-        self.carry_out("a change", |database| {
+        self.carry_out(doing, |database| {
             database.transaction(|to| Ok(line.enter_if_done(to, &[], change)? > 0))
         })
     }

@@ -108,7 +108,7 @@ impl Plant {
     /// [`StoreError`] when the plant does not take it.
     pub fn share(&mut self, board: &SharedBoard, operator: &str) -> Result<bool, StoreError> {
         let SharedBoard { name, kind, target, product, serial, station, .. } = board;
-        self.audited(operator, "share board", name, target, |to| {
+        self.audited("to share a board", operator, "share board", name, target, |to| {
             // Two who share one unit under two names at once would not see each other's board.
             to.batch(LOCK_BOARDS)?;
             to.execute(sql::ADD_BOARD, values![name, kind, target, product, serial, station])
@@ -132,7 +132,7 @@ impl Plant {
     /// # Errors
     /// Like [`Self::share`].
     pub fn take_out(&mut self, name: &str, reason: &str, operator: &str) -> Result<bool, StoreError> {
-        self.audited(operator, "board out", name, reason, |to| {
+        self.audited("to take a board out", operator, "board out", name, reason, |to| {
             to.execute(sql::BOARD_OUT, values![reason, name])
         })
     }
@@ -142,7 +142,7 @@ impl Plant {
     /// # Errors
     /// Like [`Self::share`].
     pub fn put_in(&mut self, name: &str, reason: &str, operator: &str) -> Result<bool, StoreError> {
-        self.audited(operator, "board in", name, reason, |to| {
+        self.audited("to put a board back", operator, "board in", name, reason, |to| {
             to.execute(sql::BOARD_OUT, values![None::<&str>, name])
         })
     }
@@ -152,7 +152,7 @@ impl Plant {
     /// # Errors
     /// Like [`Self::share`].
     pub fn unshare(&mut self, name: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        self.audited(operator, "unshare board", name, reason, |to| {
+        self.audited("to unshare a board", operator, "unshare board", name, reason, |to| {
             to.execute(sql::FORGET_BOARD, values![name])
         })
     }

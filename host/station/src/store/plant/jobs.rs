@@ -180,7 +180,7 @@ impl Plant {
         let needs = needs.join(" ");
         let subject = added.first().cloned().unwrap_or_default();
         let detail = format!("{count} of {} {} for {} {serial}{kind}", plan.name, plan.version, plan.product);
-        self.audited(operator, "add job", &subject, &detail, |to| {
+        self.audited("to add jobs", operator, "add job", &subject, &detail, |to| {
             arrived::plan(to, plan, at_ms)?;
             added.iter().try_fold(0, |done, id| {
                 let of = values![id, &plan.sha256, &plan.product, serial, kind, &needs, *priority, *operator];
@@ -195,7 +195,7 @@ impl Plant {
     /// # Errors
     /// Like [`Self::add_jobs`].
     pub fn cancel_job(&mut self, id: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        self.audited(operator, "cancel job", id, reason, |to| {
+        self.audited("to cancel a job", operator, "cancel job", id, reason, |to| {
             to.execute(sql::CANCEL_JOB, values![reason, id])
         })
     }
@@ -205,7 +205,9 @@ impl Plant {
     /// # Errors
     /// Like [`Self::add_jobs`].
     pub fn retry_job(&mut self, id: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        self.audited(operator, "retry job", id, reason, |to| to.execute(sql::RETRY_JOB, values![id]))
+        self.audited("to retry a job", operator, "retry job", id, reason, |to| {
+            to.execute(sql::RETRY_JOB, values![id])
+        })
     }
 
     /// Gives `worker` the first job that it can judge, with a board; none if there is none for now.

@@ -230,7 +230,7 @@ impl Plant {
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
     pub fn forget(&mut self, station: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        self.audited(operator, "forget station", station, reason, |to| {
+        self.audited("to forget a station", operator, "forget station", station, reason, |to| {
             to.execute(sql::FORGET_STATION, values![station])
         })
     }

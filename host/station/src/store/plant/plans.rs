@@ -60,7 +60,7 @@ impl Plant {
         let text = statement.text();
         let at_ms = clock::now_ms();
         let subject = format!("{product}/{name} {version}");
-        self.audited(operator, "publish plan", &subject, reason, |to| {
+        self.audited("to publish a plan", operator, "publish plan", &subject, reason, |to| {
             if let Some(bundle) = bundle {
                 to.execute(sql::ADD_BUNDLE, values![sha256, &bundle.text()])?;
             }

@@ -23,7 +23,7 @@ impl Plant {
         told: &mut dyn FnMut(u64),
     ) -> Result<u64, StoreError> {
         let bound = ids::first_of(before_ms);
-        self.audited(operator, PRUNE, &bound, reason, |_| Ok(1))?;
+        self.audited("to be pruned", operator, PRUNE, &bound, reason, |_| Ok(1))?;
         let (mut after, mut removed) = (String::new(), 0);
         loop {
             let last: Option<String> = self.carry_out("to tell old runs", |database| {
