@@ -1,8 +1,8 @@
 use halfrow::compare::Comparison;
 use halfrow::report;
 use halfrow::result::{
-    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, Finding, LinkReport, Problem,
-    Reconnection, Report, Suspect,
+    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, Finding, LinkReport, MissingRows,
+    Problem, Reconnection, Report, Suspect,
 };
 
 use crate::made;
@@ -178,7 +178,7 @@ fn noise() -> (Report, Vec<Evidence>) {
         input: input.clone(),
         found: found.clone(),
         expected: expected.clone(),
-        missing: Vec::new(),
+        missing: MissingRows::default(),
     };
     (report, (0..16).map(kept).collect())
 }
@@ -209,7 +209,7 @@ fn of_many_frames_the_first_that_differ_keep_their_maps_and_what_is_left_out_is_
             input: input.clone(),
             found: right.clone(),
             expected: right.clone(),
-            missing: Vec::new(),
+            missing: MissingRows::default(),
         })
         .collect();
     for index in [0, 2, 2999] {

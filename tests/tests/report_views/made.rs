@@ -4,9 +4,9 @@ use halfrow::compare::Comparison;
 use halfrow::frames::street::EdgeDeviation;
 use halfrow::result::{
     Account, BoardKind, BoardReport, BurstsReport, Check, CheckName, Defect, Evidence, EvidenceReport,
-    Finding, FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, NotExercised, Outcome, Problem,
-    Reading, Repetition, Report, RunReport, Schema, SoakChart, SoakDifference, SoakInterval, SoakLength,
-    SoakReport, Streamed, StreetReport, Suspect, TablesReport,
+    Finding, FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, MissingRows, NotExercised,
+    Outcome, Problem, Reading, Repetition, Report, RunReport, Schema, SoakChart, SoakDifference,
+    SoakInterval, SoakLength, SoakReport, Streamed, StreetReport, Suspect, TablesReport,
 };
 use halfrow::verdict::Cause;
 use halfrow_model::{BitDepth, Frame, Phase};
@@ -122,7 +122,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
         not_exercised: Vec::new(),
         ..pass()
     };
-    (report, vec![Evidence { index: 1, input, found, expected, missing: Vec::new() }])
+    (report, vec![Evidence { index: 1, input, found, expected, missing: MissingRows::default() }])
 }
 
 /// The board never answered.
@@ -182,6 +182,7 @@ pub(crate) fn equal_frame((number, name): (u16, &str)) -> FrameReport {
         first_rows: None,
         comparison: Comparison { samples: 1920 * 1080, ..Comparison::new(1920, 1080) },
         rows: 1080,
+        missing: MissingRows::default(),
         seconds: 0.75,
     }
 }

@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use halfrow::compare::Comparison;
 use halfrow::report;
-use halfrow::result::{Evidence, Report};
+use halfrow::result::{Evidence, MissingRows, Report};
 use halfrow_model::Frame;
 
 use crate::made;
@@ -33,7 +33,8 @@ fn each_pixel_of_the_map_of_a_large_frame_shows_the_largest_difference_of_its_ei
     let expected = made::sized_frame(256, 72, |_, _| 100);
     let found = made::sized_frame(256, 72, |row, column| if row == 3 && column < 5 { 116 } else { 100 });
     report.frames[1].comparison = Comparison::of_frames(&expected, &found);
-    evidence[0] = Evidence { index: 1, input: expected.clone(), found, expected, missing: Vec::new() };
+    evidence[0] =
+        Evidence { index: 1, input: expected.clone(), found, expected, missing: MissingRows::default() };
     let page = report::html(&report, &evidence).unwrap();
     let (width, height, pixels) = picture(&page, "Map of differences");
     assert_eq!((width, height), (32, 9));
@@ -98,7 +99,9 @@ fn without_rows(report: &mut Report, kept: &mut Evidence, missing: &[usize]) {
     report.frames[1].rows = found.height() - missing.len();
     report.frames[1].comparison = comparison;
     kept.found = Frame::new(found.width(), found.depth(), found.phase(), samples).unwrap();
-    kept.missing = missing.to_vec();
+    let returned: Vec<_> = (0..kept.found.height()).map(|row| !missing.contains(&row)).collect();
+    kept.missing = MissingRows::of(&returned);
+    report.frames[1].missing = kept.missing.clone();
 }
 
 /// Nothing is known about them, so they are not shown as black samples that differ.
@@ -133,7 +136,8 @@ fn the_legend_of_a_large_frame_is_the_maps_however_few_rows_came_back() {
     let (mut report, mut evidence) = made::fail();
     let expected = made::sized_frame(256, 72, |_, _| 100);
     let found = made::sized_frame(256, 72, |row, column| if row == 3 && column < 5 { 116 } else { 100 });
-    evidence[0] = Evidence { index: 1, input: expected.clone(), found, expected, missing: Vec::new() };
+    evidence[0] =
+        Evidence { index: 1, input: expected.clone(), found, expected, missing: MissingRows::default() };
     without_rows(&mut report, &mut evidence[0], &(4..72).collect::<Vec<_>>());
     let page = report::html(&report, &evidence).unwrap();
     assert!(page.contains("in each 8 × 8 samples:"));

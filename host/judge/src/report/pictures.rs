@@ -10,12 +10,12 @@ use halfrow_model::Frame;
 use png::EncodingError;
 
 use crate::frames::preview::{self, RgbImage};
+use crate::result::MissingRows;
 
 pub(super) use crop::{Window, windows};
 pub(super) use map::difference_map;
 pub use map::side;
-pub(super) use scale::MISSING;
-pub use scale::{Step, steps_up_to};
+pub use scale::{MISSING, Step, steps_up_to};
 
 /// The width of the narrowest preview that still shows something.
 const MIN_WIDTH: usize = 64;
@@ -57,12 +57,12 @@ pub fn developed(frame: &Frame, max_width: usize) -> Result<Vec<u8>, EncodingErr
 }
 
 /// A PNG that maps where and by how much two frames of one size differ: one pixel for each square of [`side`] by [`side`]
-/// samples, in the colours of [`steps_up_to`] the largest difference.
+/// samples, in the colours of [`steps_up_to`] the largest difference, or in [`MISSING`] where rows that are `missing` say nothing.
 ///
 /// # Errors
 /// The PNG encoder's.
-pub fn differences(expected: &Frame, found: &Frame) -> Result<Vec<u8>, EncodingError> {
-    Ok(difference_map(expected, found, &[])?.png)
+pub fn differences(expected: &Frame, found: &Frame, missing: &MissingRows) -> Result<Vec<u8>, EncodingError> {
+    Ok(difference_map(expected, found, missing)?.png)
 }
 
 /// The frame as a picture of at most `max_width` columns and `most_bytes` bytes, as large as that allows; none if not even

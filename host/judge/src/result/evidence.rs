@@ -3,6 +3,7 @@
 use halfrow_model::Frame;
 use serde::{Deserialize, Serialize};
 
+use super::MissingRows;
 use crate::compare::Comparison;
 
 /// A frame that was kept: what went in, what came out and what should have.
@@ -16,20 +17,17 @@ pub struct Evidence {
     pub found: Frame,
     /// The frame that the reference gives.
     pub expected: Frame,
-    /// The rows that did not come back, in ascending order.
-    pub missing: Vec<usize>,
+    /// The rows that did not come back.
+    pub missing: MissingRows,
 }
 
 impl Evidence {
-    /// Whether a row did not come back.
-    pub(crate) fn is_missing(&self, row: usize) -> bool {
-        self.missing.binary_search(&row).is_ok()
-    }
-
     /// The rows that came back: the number of each, what it should be, and what it is.
     pub(crate) fn returned(&self) -> impl Iterator<Item = (usize, &[u16], &[u16])> {
         let pairs = self.expected.rows().zip(self.found.rows()).enumerate();
-        pairs.filter(|(row, _)| !self.is_missing(*row)).map(|(row, (expected, found))| (row, expected, found))
+        pairs
+            .filter(|(row, _)| !self.missing.contains(*row))
+            .map(|(row, (expected, found))| (row, expected, found))
     }
 
     /// Compares the rows that came back.

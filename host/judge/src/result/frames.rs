@@ -5,7 +5,7 @@ use std::fmt;
 use halfrow_model::Phase;
 use serde::{Deserialize, Serialize};
 
-use super::as_text;
+use super::{MissingRows, as_text};
 use crate::compare::Comparison;
 
 /// The comparisons of several frames, added up.
@@ -61,6 +61,9 @@ pub struct FrameReport {
     pub first_rows: Option<usize>,
     /// Rows that came back.
     pub rows: usize,
+    /// The others.
+    #[serde(default, skip_serializing_if = "MissingRows::is_empty")]
+    pub missing: MissingRows,
     /// Seconds on the wall clock from when the frame before it had come back until this one had.
     pub seconds: f64,
 }

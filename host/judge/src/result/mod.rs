@@ -26,6 +26,7 @@ mod frames;
 mod identity;
 mod late_rows;
 mod link;
+mod missing_rows;
 mod not_exercised;
 mod problem;
 mod rule;
@@ -60,6 +61,7 @@ pub use frames::{FrameReport, FrameTiming, FrameTotals, LatencyReport, Variation
 pub use identity::{BurstsReport, GridsReport, Identity};
 pub use late_rows::LateRows;
 pub use link::{LinkReport, Reconnection};
+pub use missing_rows::MissingRows;
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem, split_remedy};
 pub use rule::{Answer, MissingRow, NumberedRow, RepeatedRow, RowPart, Rule};

@@ -5,7 +5,7 @@ use std::iter;
 
 use halfrow::compare::Comparison;
 use halfrow::diagnosis::{Case, Uploaded, diagnose};
-use halfrow::result::{Evidence, FrameReport, FrameTiming, Suspect};
+use halfrow::result::{Evidence, FrameReport, FrameTiming, MissingRows, Suspect};
 use halfrow_mock::{
     BoardFault, Depth, GridShape, Node, Options, Player, RowIn, Settings, Tables, board_fault,
 };
@@ -218,11 +218,12 @@ impl CaseInput {
             first_rows: None,
             seconds: 0.0,
             rows: input.height(),
+            missing: MissingRows::default(),
             comparison,
         });
         if differs {
             let index = self.frames.len() - 1;
-            self.evidence.push(Evidence { index, input, found, expected, missing: Vec::new() });
+            self.evidence.push(Evidence { index, input, found, expected, missing: MissingRows::default() });
         }
     }
 
@@ -232,7 +233,13 @@ impl CaseInput {
         for (index, (_, input, expected)) in sound.into_iter().enumerate() {
             if !kept.contains(&index) {
                 let found = expected.clone();
-                self.evidence.push(Evidence { index, input, found, expected, missing: Vec::new() });
+                self.evidence.push(Evidence {
+                    index,
+                    input,
+                    found,
+                    expected,
+                    missing: MissingRows::default(),
+                });
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Lines of the line memory.
 
 use halfrow::compare::Comparison;
-use halfrow::result::Evidence;
+use halfrow::result::{Evidence, MissingRows};
 use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, RowFactor, TableSet};
 
 use crate::bench::{Bench, assert_named, fault, is_told, narrow, wide};
@@ -22,12 +22,14 @@ fn rows_that_never_came_back_contradict_no_suspect() {
     let mut seen = bench.play(Some(fault("stuck-data,bit=5,value=1")));
     let kept = seen.evidence.last_mut().unwrap();
     let Evidence { found, expected, .. } = &*kept;
-    let came = 9 * found.width();
-    let samples = [&found.samples()[..came], &vec![0; found.samples().len() - came]].concat();
+    let samples_that_came = 9 * found.width();
+    let samples =
+        [&found.samples()[..samples_that_came], &vec![0; found.samples().len() - samples_that_came]].concat();
     let mut comparison = Comparison::new(found.width(), found.height());
     (0..9).for_each(|row| comparison.row(row, expected.row(row), found.row(row)));
     kept.found = Frame::new(found.width(), found.depth(), found.phase(), samples).unwrap();
-    kept.missing = (9..16).collect();
+    let came: Vec<_> = (0..16).map(|row| row < 9).collect();
+    kept.missing = MissingRows::of(&came);
     let frame = &mut seen.frames[kept.index];
     (frame.rows, frame.comparison) = (9, comparison);
     let suspects = bench.judge(&seen);

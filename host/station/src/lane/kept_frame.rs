@@ -185,6 +185,8 @@ pub(crate) fn names(folder: &Path) -> io::Result<Vec<String>> {
 
 #[cfg(test)]
 mod tests {
+    use halfrow::result::MissingRows;
+
     use super::*;
 
     #[test]
@@ -203,7 +205,7 @@ mod tests {
         let expected = Frame::new(8, BitDepth::Twelve, Phase::default(), vec![9; 32]).unwrap();
         let found =
             Frame::new(8, BitDepth::Twelve, Phase::default(), [vec![9; 31], vec![7]].concat()).unwrap();
-        Evidence { index, input: expected.clone(), found, expected, missing: Vec::new() }
+        Evidence { index, input: expected.clone(), found, expected, missing: MissingRows::default() }
     }
 
     #[test]

@@ -97,8 +97,8 @@ impl Window {
     /// # Errors
     /// The PNG encoder's.
     pub(in crate::report) fn crops(self, evidence: &Evidence) -> Result<Crops, EncodingError> {
-        let Evidence { input, expected, found, .. } = evidence;
-        let is_missing = |place: usize| evidence.is_missing(self.top + place / self.width);
+        let Evidence { input, expected, found, missing, .. } = evidence;
+        let is_missing = |place: usize| missing.contains(self.top + place / self.width);
         let found_at = || self.samples(found).enumerate();
         let returned = found_at().filter(|(place, _)| !is_missing(*place));
         let sent = [input, expected].into_iter().flat_map(|frame| self.samples(frame));

@@ -6,6 +6,7 @@ use png::EncodingError;
 use super::Picture;
 use super::scale::{MISSING, colour};
 use crate::frames::preview::RgbImage;
+use crate::result::MissingRows;
 
 /// The side of the square of samples that one pixel stands for in the map of a large frame. It keeps a single difference
 /// visible when a whole frame is shown on a phone.
@@ -27,14 +28,14 @@ pub fn side(samples: usize) -> usize {
 pub(in crate::report) fn difference_map(
     expected: &Frame,
     found: &Frame,
-    missing: &[usize],
+    missing: &MissingRows,
 ) -> Result<Picture, EncodingError> {
     let side = side(expected.samples().len());
     let (width, height) = (expected.width().div_ceil(side), expected.height().div_ceil(side));
     let mut largest = vec![0_u16; width * height];
     let mut has_all = vec![true; height];
     for (row, (expected, found)) in expected.rows().zip(found.rows()).enumerate() {
-        if missing.binary_search(&row).is_ok() {
+        if missing.contains(row) {
             has_all[row / side] = false;
             continue;
         }

@@ -24,7 +24,7 @@ const STEPS: [Step; 7] = [
 
 /// The colour of rows that did not come back: the sky blue of Okabe and Ito's palette for colour-blind readers. Magma has no such
 /// colour.
-pub(in crate::report) const MISSING: [u8; 3] = [0x56, 0xb4, 0xe9];
+pub const MISSING: [u8; 3] = [0x56, 0xb4, 0xe9];
 
 /// The colour where nothing differs.
 pub(super) const EQUAL: [u8; 3] = MAGMA[0];

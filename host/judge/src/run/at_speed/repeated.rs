@@ -18,8 +18,8 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
-    Account, CheckName, Defect, Evidence, Finding, FrameReport, KeptRow, Problem, Repetition, Streamed,
-    Suspect,
+    Account, CheckName, Defect, Evidence, Finding, FrameReport, KeptRow, MissingRows, Problem, Repetition,
+    Streamed, Suspect,
 };
 use crate::run::findings::{During, End};
 use crate::run::frames::kept::as_found;
@@ -54,7 +54,10 @@ impl MadeRows {
     /// Rows that `made_by` makes of `input` and that were found as `expected`.
     pub(in crate::run) fn right(made_by: Generation, input: Frame, expected: Frame) -> Self {
         let found = expected.clone();
-        Self { made_by, evidence: Evidence { index: 0, input, found, expected, missing: Vec::new() } }
+        Self {
+            made_by,
+            evidence: Evidence { index: 0, input, found, expected, missing: MissingRows::default() },
+        }
     }
 
     /// The same with `samples` as the last row; none if they are not a row.
@@ -253,6 +256,7 @@ impl Run<'_> {
             variation: None,
             first_rows: None,
             rows: tables.geometry().height(),
+            missing: evidence.missing.clone(),
             comparison: Comparison::of_frames(&evidence.expected, &evidence.found),
             seconds: 0.0,
         };

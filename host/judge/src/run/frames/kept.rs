@@ -144,6 +144,7 @@ mod tests {
     use halfrow_model::{BitDepth, Frame, Phase};
 
     use super::*;
+    use crate::result::MissingRows;
 
     /// Three frames of 64 x 2 samples, 16 bits each.
     const ONE: usize = 3 * 64 * 2 * 2;
@@ -151,7 +152,7 @@ mod tests {
     fn evidence(index: usize, differs: bool) -> Evidence {
         let frame = |sample| Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![sample; 2 * 64]).unwrap();
         let found = frame(2 + u16::from(differs));
-        Evidence { index, input: frame(1), found, expected: frame(2), missing: Vec::new() }
+        Evidence { index, input: frame(1), found, expected: frame(2), missing: MissingRows::default() }
     }
 
     /// The indices of the frames that are kept if there is room for `room` of them, and the number left out. `differing`

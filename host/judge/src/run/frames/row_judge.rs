@@ -15,7 +15,7 @@ use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
 use crate::progress::Progress;
-use crate::result::{Evidence, Finding, FrameReport, FrameTiming, Variation};
+use crate::result::{Evidence, Finding, FrameReport, FrameTiming, MissingRows, Variation};
 
 /// This frame is kept even if it is equal, because the report measures its façades.
 pub(crate) const STREET: &str = "builtin:street";
@@ -174,19 +174,14 @@ impl<'a> RowJudge<'a> {
         let Prepared { name, number, generation, sha256, input, expected, centre } = prepared;
         self.seen.shown.note(&input, &expected, centre);
         let (is_whole, budget) = (rows >= expected.height(), self.options.evidence_bytes);
+        let missing = MissingRows::of(&returned);
         let offered = self.offered(&name, &expected, is_whole, comparison.differences > 0);
         if is_whole || offered.is_wanted {
             let index = self.seen.frames.len();
             self.seen.evidence.offer(&offered, budget, || {
                 let found = as_found(&expected, found)?;
-                let missing = (0..returned.len()).filter(|&row| !returned[row]).collect();
-                Some(Evidence {
-                    index,
-                    input: (*input).clone(),
-                    found,
-                    expected: (*expected).clone(),
-                    missing,
-                })
+                let (input, expected) = ((*input).clone(), (*expected).clone());
+                Some(Evidence { index, input, found, expected, missing: missing.clone() })
             });
         }
         let now = Instant::now();
@@ -202,6 +197,7 @@ impl<'a> RowJudge<'a> {
             first_rows: self.options.first_rows,
             comparison,
             rows,
+            missing,
             seconds: now.duration_since(self.since).as_secs_f64(),
         });
         self.since = now;
@@ -376,7 +372,8 @@ mod tests {
         judge.next_frame().unwrap();
         [(0, 7), (2, 6)].into_iter().for_each(|(row, sample)| give(&mut judge, 7, row, sample));
         judge.finish().unwrap();
-        assert_eq!(seen.evidence.all()[0].missing, [1, 3]);
+        let missing = MissingRows::of(&[true, false, true, false]);
+        assert_eq!([&seen.frames[0].missing, &seen.evidence.all()[0].missing], [&missing; 2]);
     }
 
     /// No frame behind it is sent, so that all that comes back is right.

@@ -7,16 +7,19 @@ use axum::response::{IntoResponse as _, Response};
 use halfrow::frames::{self, ReadOptions};
 use halfrow::model::{BitDepth, Frame};
 use halfrow::report::pictures;
-use halfrow::result::FrameReport;
+use halfrow::result::{FrameReport, MissingRows};
 use maud::{Markup, html};
 use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::evidence::attached;
 use super::show;
+use crate::export;
 use crate::history::runs::RunLine;
+use crate::history::unit;
 use crate::lane::kept_frame::{KeptFrame, View};
 use crate::record::{Attachment, Record};
+use crate::store::{Snapshot, StoreError};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -41,14 +44,33 @@ pub(super) async fn difference(
     visit: Visit,
     Path((run, found, expected)): Path<(String, String, String)>,
 ) -> Result<Response, Trouble> {
+    let record = app
+        .look(&visit, {
+            let run = run.clone();
+            move |now| recorded(now, &run)
+        })
+        .await?;
     let found = attached(&app, &visit, run.clone(), found).await?;
     let expected = attached(&app, &visit, run, expected).await?;
     let made = move || {
+        let missing = record.and_then(|record| missing(&record, &found.1)).unwrap_or_default();
         let (found, expected) = (decoded(&found)?, decoded(&expected)?);
-        pictures::differences(&expected, &found).ok()
+        pictures::differences(&expected, &found, &missing).ok()
     };
     let picture = app.blocking(&visit, made).await?;
     picture.map(answer).ok_or_else(|| Trouble::missing(&visit))
+}
+
+/// The record of a run, if it can be read.
+fn recorded(now: &Snapshot, run: &str) -> Result<Option<Record>, StoreError> {
+    let hash = unit::run_of(now, run)?.and_then(|run| run.line.record_sha256);
+    Ok(hash.and_then(|hash| export::record(now, &hash).ok()).map(|(record, _)| record))
+}
+
+/// The rows that did not come back of the frame that an attachment holds.
+fn missing(record: &Record, attachment: &Attachment) -> Option<MissingRows> {
+    let (frame, _) = KeptFrame::of(&attachment.name)?;
+    FrameReport::deserialize(of_frame(record, &frame)?).ok().map(|frame| frame.missing)
 }
 
 /// The frame that an attachment is, if it is one.
@@ -132,12 +154,19 @@ fn legend(visit: &Visit, known: &Value) -> Markup {
         p.soft {
             (visit.say("pictures.difference")) (visit.say("told.colon")) (squares)
             @for step in pictures::steps_up_to(frame.comparison.largest) {
-                @let [red, green, blue] = step.colour;
-                " " span.key {
-                    svg viewBox="0 0 1 1" aria-hidden="true" { rect width="1" height="1" fill=(format!("rgb({red} {green} {blue})")) {} }
-                    " " (visit.words.fill("pictures.from_on", &[("from", &step.from.to_string())]))
-                }
+                (key(step.colour, &visit.words.fill("pictures.from_on", &[("from", &step.from.to_string())])))
             }
+            @if !frame.missing.is_empty() { (key(pictures::MISSING, visit.say("pictures.missing"))) }
+        }
+    }
+}
+
+/// What a colour means.
+fn key([red, green, blue]: [u8; 3], meaning: &str) -> Markup {
+    html! {
+        " " span.key {
+            svg viewBox="0 0 1 1" aria-hidden="true" { rect width="1" height="1" fill=(format!("rgb({red} {green} {blue})")) {} }
+            " " (meaning)
         }
     }
 }
@@ -197,6 +226,7 @@ mod tests {
             comparison,
             first_rows: None,
             rows: 4,
+            missing: MissingRows::of(&[true; 4]),
             seconds: 0.0,
         };
         assert_eq!(samples(&frame), 256 * 72);

@@ -4,13 +4,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
-use halfrow::frames::{ReadOptions, decode};
-use halfrow_station::record::{Record, RunCause};
+use halfrow_station::record::RunCause;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
-use super::served::{self, Served};
+use super::served::Served;
 use super::yields::{CASES, enter};
-use crate::common::{self, program, reason};
+use crate::common::{program, reason};
 
 /// Sixty runs of seven units in three lanes by two operators, one every hour.
 fn many() -> (Served, Vec<(String, Run)>) {
@@ -28,12 +27,12 @@ fn many() -> (Served, Vec<(String, Run)>) {
 }
 
 /// What follows each `before`, up to `end`.
-fn all_between(page: &str, before: &str, end: char) -> Vec<String> {
+pub(super) fn all_between(page: &str, before: &str, end: char) -> Vec<String> {
     page.split(before).skip(1).map(|rest| rest.split(end).next().unwrap().to_owned()).collect()
 }
 
 /// The runs that a list shows, in its order.
-fn listed(page: &str) -> Vec<String> {
+pub(super) fn listed(page: &str) -> Vec<String> {
     all_between(page, "<td class=\"when\"><a href=\"/runs/", '"')
 }
 
@@ -235,60 +234,6 @@ fn a_run_s_page_says_all_of_it_and_gives_it_to_others() {
     for missing in ["/runs/x", "/unit?serial=S2", "/unit", &format!("/runs/{id}/export/pdf")] {
         assert_eq!(served.get(missing).status, 404, "{missing}");
     }
-}
-
-/// Judges a mock board by a plan that takes a moment, and returns the exit code.
-fn judge(folder: &Path, board: &str, serial: &str) -> Option<i32> {
-    let plan = folder.join("plan.toml");
-    std::fs::write(&plan, served::plan()).unwrap();
-    let arguments = ["run", "--serial", serial, "--board", board, "--operator", "weber"];
-    let mut run = Command::new(program());
-    run.args(arguments).arg("--data").arg(folder).arg("--any-disk").arg("--plan").arg(plan);
-    run.output().unwrap().status.code()
-}
-
-/// The samples of a frame that was kept, and their hash.
-fn samples(served: &Served, run: &str, name: &str, record: &Record) -> (Vec<u16>, String) {
-    let attached = record.attachments.iter().find(|one| one.name.ends_with(name)).unwrap();
-    let answer = served.get(&format!("/runs/{run}/evidence/{}", attached.sha256));
-    assert_eq!(answer.header("content-type"), Some("image/png"));
-    let samples = decode(&answer.body, &ReadOptions::default()).unwrap().samples().to_vec();
-    let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
-    (samples, halfrow::result::sha256([bytes]))
-}
-
-#[test]
-fn a_fail_keeps_the_frames_that_are_wrong_and_shows_them() {
-    let folder = common::folder();
-    assert_eq!(judge(folder.path(), "mock,fault=stuck-data,bit=7", "CAT00001"), Some(1));
-    assert_eq!(judge(folder.path(), "mock", "CAT00002"), Some(0));
-    let served = Served::of(Made::at(folder));
-    let runs = listed(&served.page("/history"));
-    let [passed, failed] = &runs[..] else { panic!("{runs:?}") };
-    let stored = served.folder().verdict_of(failed).unwrap().unwrap();
-    let record = Record::parse(&served.folder().blobs().get(&stored.record_sha256).unwrap()).unwrap();
-    let told = &record.steps.last().unwrap().evidence.as_ref().unwrap()["frames"][0];
-    let [input, found, expected] =
-        ["-in.png", "-out.png", "-should.png"].map(|name| samples(&served, failed, name, &record));
-    // The judge counted and hashed these while it had the frame.
-    let differing = found.0.iter().zip(&expected.0).filter(|(found, expected)| found != expected).count();
-    assert_eq!(Some(differing as u64), told["comparison"]["differences"].as_u64());
-    assert_eq!(Some(input.1.as_str()), told["sha256"].as_str());
-    let page = served.page(&format!("/runs/{failed}"));
-    let pictures = all_between(&page, "<img src=\"", '"');
-    assert_eq!(pictures.len(), 4, "{page}");
-    for picture in &pictures {
-        let answer = served.get(picture);
-        assert_eq!((answer.status, answer.header("content-type")), (200, Some("image/png")), "{picture}");
-        assert!(answer.body.starts_with(b"\x89PNG"));
-        // The map of so small a frame has a square for each sample.
-        assert_eq!(answer.body[16..24], [0, 0, 0, 64, 0, 0, 0, 8], "{picture}");
-        // It is evidence of that run only.
-        assert_eq!(served.get(&picture.replace(failed, passed)).status, 404);
-    }
-    assert!(page.contains("A square stands for one sample. Colour of its difference:"), "{page}");
-    assert!(page.contains("fill=\"rgb(131 38 129)\"></rect></svg> from 1<"), "{page}");
-    assert!(!served.page(&format!("/runs/{passed}")).contains("<img"));
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod looked_at;
 pub(crate) mod made;
 mod pages;
 mod pareto;
+mod pictures;
 mod piped;
 mod put_back;
 mod read_only;
