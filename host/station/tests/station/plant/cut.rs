@@ -8,6 +8,7 @@ use super::sent::send;
 use super::server::Server;
 use super::tables::is_as;
 use super::way::{Cut, way};
+use crate::common::until;
 use crate::history::released::history;
 
 #[test]
@@ -38,10 +39,13 @@ fn cut_at(numbers: impl IntoIterator<Item = usize>) {
             assert!(first.is_away && first.failed == 1, "{cut:?} {number}: {first:?}");
             // What the station regards as unsent is at the plant if, and only if, the server got the COMMIT.
             let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("nothing was cut") };
-            let there = server
-                .rows("SELECT id FROM run UNION ALL SELECT id FROM audit UNION ALL SELECT id FROM waiver");
             let surplus = usize::from(cut == Cut::After);
-            assert_eq!(there.len() + unsent.entries as usize, 10 + surplus, "{cut:?} {number}");
+            until(&format!("what was sent, {cut:?} {number}"), || {
+                let there = server.rows(
+                    "SELECT id FROM run UNION ALL SELECT id FROM audit UNION ALL SELECT id FROM waiver",
+                );
+                there.len() + unsent.entries as usize == 10 + surplus
+            });
             due(&made);
             let (made, rest) = send(made, address);
             assert_eq!(first.sent + rest.sent, 10, "{cut:?} {number}");

@@ -78,7 +78,12 @@ fn what_leaves_the_computer_goes_through_tls_and_to_the_plant_alone() {
 fn this_computer() -> String {
     let said = Command::new("hostname").arg("-I").output().unwrap();
     let said = String::from_utf8(said.stdout).unwrap();
-    said.split_whitespace().find(|name| !name.contains(':')).unwrap().to_owned()
+    let Some(address) = said.split_whitespace().find(|name| !name.contains(':')) else {
+        panic!(
+            "this computer needs an IPv4 address besides 127.0.0.1, at which the server is reached from outside"
+        );
+    };
+    address.to_owned()
 }
 
 /// A server that asks the role `halfrow` for a password.

@@ -11,7 +11,7 @@ use halfrow_station::store::{Plant, PlantAddress};
 use postgres::{Client, NoTls};
 use tempfile::TempDir;
 
-use crate::common::{PORTS_TRIED, free_port};
+use crate::common::{PORTS_TRIED, free_port, until};
 
 /// How long a server may take to start.
 const STARTED: Duration = Duration::from_secs(60);
@@ -166,10 +166,11 @@ impl Server {
     /// Kills the server with SIGKILL; its child processes then end by themselves.
     pub(crate) fn kill(&mut self) {
         let Some(mut process) = self.process.take() else { return };
-        let memory = self.memory();
-        // Its children end when they notice that it is gone.
+        let (memory, children) = (self.memory(), self.children());
         process.kill().unwrap();
         process.wait().unwrap();
+        // The server does not start while a child still holds its memory.
+        until("the end of the server's processes", || !children.iter().any(|child| is_running(child)));
         // A machine has few of these segments, and they outlive the process that made them.
         if let Some(memory) = memory {
             let _ = Command::new("ipcrm").args(["-m", &memory]).status();
@@ -178,8 +179,14 @@ impl Server {
         for left in [socket, self.data().join("postmaster.pid")] {
             let _ = fs::remove_file(left);
         }
-        // The server does not start while a child still holds its memory.
-        thread::sleep(Duration::from_millis(300));
+    }
+
+    /// The ids of the processes that it has started.
+    fn children(&self) -> Vec<String> {
+        let lock = fs::read_to_string(self.data().join("postmaster.pid")).unwrap_or_default();
+        let id = lock.lines().next().unwrap_or_default();
+        let children = fs::read_to_string(format!("/proc/{id}/task/{id}/children")).unwrap_or_default();
+        children.split_whitespace().map(str::to_owned).collect()
     }
 
     /// The id of its segment of shared memory (System V), by which a server checks whether another one has its folder.
@@ -210,6 +217,11 @@ impl Server {
     pub(crate) fn rows(&self, text: &str) -> Vec<Vec<String>> {
         rows(&mut self.client("plant"), text)
     }
+}
+
+/// Whether a process runs; one that has ended and was not waited for has no command line.
+fn is_running(id: &str) -> bool {
+    fs::read(format!("/proc/{id}/cmdline")).is_ok_and(|line| !line.is_empty())
 }
 
 impl Drop for Server {
