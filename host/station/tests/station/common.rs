@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::fs::{self, File};
 use std::net::TcpListener;
-use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
+use std::os::unix::fs::FileTypeExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,9 +41,15 @@ pub(crate) fn folder() -> TempDir {
 
 /// A shell script of this name in `folder`.
 pub(crate) fn script(folder: &Path, name: &str, lines: &str) -> PathBuf {
+    program_of(folder, name, &format!("#!/bin/sh\n{lines}"))
+}
+
+/// A program of this name and text in `folder`. Another process writes it: one that another test starts just then would have it
+/// open, too, and a file that somebody may write to cannot be executed.
+pub(crate) fn program_of(folder: &Path, name: &str, text: &str) -> PathBuf {
     let path = folder.join(name);
-    fs::write(&path, format!("#!/bin/sh\n{lines}")).unwrap();
-    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    let write = "rm -f \"$0\" && printf %s \"$1\" > \"$0\" && chmod 755 \"$0\"";
+    assert!(Command::new("sh").args(["-c", write]).arg(&path).arg(text).status().unwrap().success());
     path
 }
 

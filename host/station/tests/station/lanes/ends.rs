@@ -78,7 +78,7 @@ fn lanes_judge_at_once_and_every_verdict_has_its_record() {
 #[test]
 fn a_lane_that_hangs_is_killed_and_recorded_and_the_others_do_not_notice() {
     let (listener, target) = silent_board();
-    let station = Station::with(&[&target, "mock,serial=1"], "");
+    let station = Station::with(&[&target, "mock,serial=1"], "").with_silence(5);
     let mut running = station.start();
     running.test("1", SERIALS[0]);
     connected(&listener);

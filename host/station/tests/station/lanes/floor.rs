@@ -34,9 +34,17 @@ impl Station {
         });
         let lanes: String = lanes.collect();
         let text =
-            format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\nsilence = 5\n{lanes}{more}");
+            format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\nsilence = 60\n{lanes}{more}");
         fs::write(station.path("station.toml"), text).unwrap();
         station
+    }
+
+    /// With lanes that may be silent only for so many seconds.
+    pub(crate) fn with_silence(self, seconds: u32) -> Self {
+        let path = self.path("station.toml");
+        let text = fs::read_to_string(&path).unwrap();
+        fs::write(&path, text.replace("silence = 60", &format!("silence = {seconds}"))).unwrap();
+        self
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {

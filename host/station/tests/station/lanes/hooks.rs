@@ -18,12 +18,10 @@ program = "./lamp"
 arguments = ["{lane}", "{serial}", "{verdict}", "{record}"]
 "#;
     let station = Station::with(&["mock", "mock,fault=stuck-data"], settings);
-    let lamp = station.path("lamp");
-    let script = "#!/bin/sh\necho \"$1 $2 $3\" > \"$(dirname \"$0\")/lamp-$1\"\n\
+    let lines = "echo \"$1 $2 $3\" > \"$(dirname \"$0\")/lamp-$1\"\n\
                   find \"$(dirname \"$0\")/data/blobs\" -name \"$4\" | grep -q . || exit 1\n\
                   [ -z \"$HALFROW_PLANT_PASSWORD\" ] || exit 1\n";
-    std::fs::write(&lamp, script).unwrap();
-    std::fs::set_permissions(&lamp, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    script(&station.path(""), "lamp", lines);
     let mut program = Command::new(program());
     program.env("HALFROW_PLANT_PASSWORD", "rosebud-5e1f");
     let mut running = station.started(program);
@@ -48,14 +46,12 @@ arguments = ["{serial}"]
 deadline = 600
 "#;
     let station = Station::with(&["mock"], settings);
-    let lamp = station.path("lamp");
-    let script = format!(
-        "#!/bin/sh\ncd \"$(dirname \"$0\")\"\necho \"begins $1\" >> lit\n\
+    let lines = format!(
+        "cd \"$(dirname \"$0\")\"\necho \"begins $1\" >> lit\n\
          [ $1 != {} ] || while [ ! -e go ]; do sleep 0.1; done\necho \"ends $1\" >> lit\n",
         SERIALS[0]
     );
-    std::fs::write(&lamp, script).unwrap();
-    std::fs::set_permissions(&lamp, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    script(&station.path(""), "lamp", &lines);
     let mut running = station.start();
     for serial in &SERIALS[..3] {
         running.scan(serial);

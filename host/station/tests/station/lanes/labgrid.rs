@@ -2,7 +2,6 @@
 //! real ones.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
 
 use halfrow_station::record::Record;
@@ -13,7 +12,7 @@ use nix::unistd::Pid;
 use super::ends::connected;
 use super::floor::{HANG, SERIALS, Station};
 use super::held::{Board, long_plan};
-use crate::common::{program, silent_board, until_found};
+use crate::common::{program, program_of, silent_board, until_found};
 
 /// Prints what is in `answer`, and keeps a diary of its arguments and of the end of its stdin.
 const LENDER: &str = r#"#!/bin/sh
@@ -30,8 +29,7 @@ echo given back >> diary
 fn station(answer: &str, more: &str) -> Station {
     let lender = format!("[labgrid]\nprogram = \"./lender\"\ncoordinator = \"bench:20408\"\n{more}");
     let station = Station::with(&["labgrid:cam-1"], &lender);
-    fs::write(station.path("lender"), LENDER).unwrap();
-    fs::set_permissions(station.path("lender"), fs::Permissions::from_mode(0o755)).unwrap();
+    program_of(&station.path(""), "lender", LENDER);
     fs::write(station.path("answer"), answer).unwrap();
     station
 }
@@ -157,8 +155,7 @@ fn what_is_wrong_with_the_program_is_told_by_its_code() {
         let station = station("", more);
         fs::remove_file(station.path("lender")).unwrap();
         if !lender.is_empty() {
-            fs::write(station.path("lender"), lender).unwrap();
-            fs::set_permissions(station.path("lender"), fs::Permissions::from_mode(0o755)).unwrap();
+            program_of(&station.path(""), "lender", lender);
         }
         let mut running = station.start();
         running.test("1", SERIALS[0]);

@@ -1,7 +1,6 @@
 //! A lane whose process cannot be killed.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 
 use halfrow_station::engine::{Engine, LaneState, News};
@@ -12,6 +11,7 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
 use super::floor::{HANG, SERIALS, Station};
+use crate::common::program_of;
 
 /// A program whose lanes stay silent, and leave the process group that is killed then.
 pub(crate) struct Stuck {
@@ -21,12 +21,10 @@ pub(crate) struct Stuck {
 
 impl Stuck {
     pub(crate) fn in_folder(folder: &Path) -> Self {
-        let [program, ids] = ["stuck", "stuck.ids"].map(|name| folder.join(name));
+        let ids = folder.join("stuck.ids");
         let noted = format!("open(my $ids, '>>', '{}'); print $ids \"$$\\n\"; close($ids);", ids.display());
         let script = format!("#!/usr/bin/perl\n{noted}\nsetpgrp(0, getpgrp(getppid()));\nsleep(600);\n");
-        fs::write(&program, script).unwrap();
-        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-        Self { program, ids }
+        Self { program: program_of(folder, "stuck", &script), ids }
     }
 }
 
@@ -41,7 +39,7 @@ impl Drop for Stuck {
 /// Its result cannot be saved, either; after that is put right, the lane is still out of service.
 #[test]
 fn a_lane_whose_process_cannot_be_killed_is_out_though_its_result_was_not_saved() {
-    let station = Station::with(&["mock"], "");
+    let station = Station::with(&["mock"], "").with_silence(5);
     let path = station.path("station.toml");
     let stuck = Stuck::in_folder(&station.path(""));
     let settings = Settings::load(&path).unwrap();

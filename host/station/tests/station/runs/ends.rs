@@ -1,6 +1,5 @@
 //! Every way in which a run can end.
 
-use std::io::Read as _;
 use std::net::{TcpListener, TcpStream};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,6 +16,7 @@ use halfrow_station::record::{RunCause, StepOutcome, StepRecord};
 use super::bench::{Did, PLAN, Station};
 use super::identity::{device, one_after_the_other};
 use crate::common::silent_board;
+use crate::lanes::ends::connected;
 
 #[test]
 fn a_sound_board_passes_and_its_record_reads_back() {
@@ -202,10 +202,7 @@ fn a_call_that_is_wrong_begins_no_run() {
 
 /// The process id of the lane, once it has connected to the board and the station has heard from it.
 pub(crate) fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
-    let (mut connection, _) = listener.accept().unwrap();
-    assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
-    // Held open, so that the lane waits for an answer.
-    thread::spawn(move || while connection.read(&mut [0; 64]).is_ok_and(|read| read > 0) {});
+    connected(listener);
     let spool = std::fs::read_dir(station.data().join("spool")).unwrap().next().unwrap().unwrap().path();
     let begun = Instant::now();
     loop {
@@ -232,12 +229,12 @@ fn a_lane_that_hangs_is_killed_and_recorded() {
     use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
-    let running = station.begin("CAT00001", &target, &["--silence", "1"]);
+    let running = station.begin("CAT00001", &target, &["--silence", "5"]);
     let lane = lane_of(&station, &listener);
     signal(lane, Signal::SIGSTOP);
     let did = Did::from(running.wait_with_output().unwrap());
     assert_eq!(did.code, Some(3), "{did:?}");
-    assert!(did.said.contains("the lane sent nothing for 1 s"), "{did:?}");
+    assert!(did.said.contains("the lane sent nothing for 5 s"), "{did:?}");
     assert!(!exists(lane), "the lane is gone");
     assert_eq!(station.query("SELECT cause FROM run"), ["crash"]);
     assert_eq!(station.run("CAT00001", "mock").code, Some(0));

@@ -1,7 +1,6 @@
 //! The process of a lane is killed at its system calls, while another lane of the same station works.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -18,7 +17,7 @@ use halfrow_station::store::{SharedStore, Store};
 
 use super::bench::{PLAN, Station, program};
 use super::unsaved::{Call, numbered};
-use crate::common::Over;
+use crate::common::{Over, script};
 
 /// A run that nobody ends or watches.
 struct Unwatched;
@@ -61,14 +60,9 @@ pub(super) fn run_in(
 
 /// A script that traces the program with the options in a file next to it. strace ends the way the traced program ended.
 fn traced(station: &Station) -> PathBuf {
-    let path = station.path("traced");
     let options = station.path("options");
-    // A script that was written anew for each run could not be executed while another thread starts a process.
-    let script =
-        format!("#!/bin/sh\nexec strace -qq $(cat {}) {} \"$@\"\n", options.display(), program().display());
-    fs::write(&path, script).unwrap();
-    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
-    path
+    let lines = format!("exec strace -qq $(cat {}) {} \"$@\"\n", options.display(), program().display());
+    script(&station.path(""), "traced", &lines)
 }
 
 /// Every call of the lane's first thread, in order, except those of the start and the end.
