@@ -1,5 +1,6 @@
 //! What `halfrow-station plan` does with plans that the plant publishes.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
@@ -114,7 +115,12 @@ pub(super) enum PublishError {
 /// Makes an engineer's key in a new file, and prints what stations know it by.
 pub(super) fn key(file: &Path) -> Result<Exit, Failure> {
     let key = SigningKey::draw(file).map_err(Failure::call)?;
-    print(&key.public().to_string())
+    let shown = print(&key.public().to_string());
+    if shown.is_err() {
+        // No station can be told of it.
+        fs::remove_file(file).map_err(Failure::error)?;
+    }
+    shown
 }
 
 pub(super) fn publish(Publish { settings, file, signer }: &Publish) -> Result<Exit, Failure> {

@@ -50,7 +50,13 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     match what {
         Action::Add { name, scope } => {
             std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
-            print(&add_token(&settings, file, name.trim(), *scope)?)
+            let name = name.trim();
+            let shown = print(&add_token(&settings, file, name, *scope)?);
+            if shown.is_err() {
+                // Nobody has seen it, nor ever will.
+                Tokens::remove_from(file, name)?;
+            }
+            shown
         }
         Action::Remove { name } => {
             Tokens::remove_from(file, name)?;
