@@ -1,13 +1,13 @@
 //! Signals that end a command: Ctrl-C, SIGTERM, and SIGHUP from a terminal or connection that is gone.
 //!
 //! A command with a board asks for them ([`stop`]): the first one is noted, so that the command can end in order, and a second
-//! ends the program at once. Any other command ends at the first. However it ends, nothing half written stays.
+//! ends the program at once, unless it is the first one again ([`AGAIN`]). Any other command ends at the first. However it ends, nothing half written stays.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, LazyLock, mpsc};
+use std::sync::{Arc, LazyLock, OnceLock, mpsc};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -20,8 +20,13 @@ use halfrow_program::signals::is_ignored;
 /// How long the last message may take.
 const TOLD: Duration = Duration::from_millis(300);
 
+/// How long the same signal counts as the first one: `timeout` sends its own to the program and then to its whole group.
+const AGAIN: Duration = Duration::from_millis(500);
+
 /// The exit code of the first signal; 0 before any.
 static FIRST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+/// When it came.
+static FIRST_AT: OnceLock<Instant> = OnceLock::new();
 /// Whether the command checks [`FIRST`].
 static IS_HEEDED: AtomicBool = AtomicBool::new(false);
 
@@ -65,7 +70,11 @@ pub fn stop() -> Arc<AtomicUsize> {
 
 fn receive(exit: Exit) {
     let code = usize::from(exit.code());
-    let is_first = FIRST.compare_exchange(0, code, Ordering::SeqCst, Ordering::SeqCst).is_ok();
+    let since = FIRST_AT.get_or_init(Instant::now);
+    let is_first = match FIRST.compare_exchange(0, code, Ordering::SeqCst, Ordering::SeqCst) {
+        Ok(_) => true,
+        Err(first) => first == code && since.elapsed() < AGAIN,
+    };
     if is_first && IS_HEEDED.load(Ordering::SeqCst) {
         return;
     }

@@ -4,6 +4,8 @@ use std::fs::{OpenOptions, read_to_string};
 use std::io::{PipeReader, PipeWriter, Write as _};
 use std::os::fd::AsRawFd as _;
 use std::process::{Child, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{Ended, Folder, Running};
@@ -148,6 +150,27 @@ fn a_second_signal_ends_at_once_what_the_first_could_not() {
     let ended = running.end();
     assert!([Some(130), Some(143)].contains(&ended.code), "{ended:?}");
     assert_eq!(folder.names("out"), [""; 0]);
+}
+
+/// `timeout` signals a program, and then its whole group. On a busy computer the second signal may come too late for that.
+#[test]
+fn the_same_signal_twice_in_a_moment_is_one() {
+    wait_until("two signals in a moment", || {
+        let folder = Folder::new();
+        let running = streaming(&folder, ["--report", "out"]);
+        let begun = Instant::now();
+        running.send("TERM");
+        thread::sleep(Duration::from_millis(2));
+        running.send("TERM");
+        let is_a_moment = begun.elapsed() < Duration::from_millis(400);
+        let ended = running.end();
+        let names = folder.names(".");
+        assert!(
+            !is_a_moment || (ended.code, &*names) == (Some(143), &["out".to_owned()]),
+            "{names:?} {ended:?}"
+        );
+        is_a_moment
+    });
 }
 
 /// The run sees both at once, unless it checks for the first one before the second comes: then it is started again.
