@@ -77,7 +77,7 @@ pub enum FrameError {
     /// A sample that the depth cannot hold.
     #[error(
         "the sample at row {row}, column {column} is {value}, above {max}, the largest of {bits} bits; \
-         give the depth that the file was taken with"
+         give the depth that the samples were taken with"
     )]
     TooBright {
         /// Its row.

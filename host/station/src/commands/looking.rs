@@ -190,7 +190,8 @@ fn until(text: &str) -> Result<i64, String> {
 }
 
 fn given(text: &str, days: i64) -> Result<i64, String> {
-    let wrong = || "give a date as 2026-11-22, or a moment as 2026-11-22T06:00:00Z".to_owned();
+    let wrong =
+        || "give a date from 1970 to 9999, as 2026-11-22, or a moment, as 2026-11-22T06:00:00Z".to_owned();
     moment(text, days).ok_or_else(wrong)
 }
 

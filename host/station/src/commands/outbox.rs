@@ -128,6 +128,9 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
         return Err(Failure::call(SinkInUse { sink: sink.to_owned() }));
     }
     let mut store = Store::open_existing(folder)?;
+    if !Snapshot::take(folder)?.unsent()?.iter().any(|unsent| unsent.sink == sink) {
+        return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
+    }
     entered(&mut store, &why.operator, &format!("outbox forget {sink}"))?;
     let forgotten = store.forget_sink(sink, &why.operator, &why.reason)?;
     print(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are")))
@@ -199,9 +202,11 @@ pub(super) struct SinkInUse {
     pub(super) sink: String,
 }
 
-/// The settings do not name this sink.
+/// The settings do not name this sink, nor does anything wait for it.
 #[derive(Debug, thiserror::Error)]
-#[error("the settings name no sink {sink}; name `plant`, or a [[sink]] of the settings")]
+#[error(
+    "there is no sink {sink}; name `plant`, a [[sink]] of the settings, or to forget it one that `outbox list` names"
+)]
 pub(super) struct SinkUnknown {
     pub(super) sink: String,
 }

@@ -14,6 +14,7 @@ use halfrow_program::number::seconds;
 use serde_json::json;
 
 use super::beginning::{Disk, Signal, recovered};
+use super::why;
 use super::{Failure, document};
 use crate::clock;
 use crate::console;
@@ -56,7 +57,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
     operator: String,
     /// The station's name [default: this computer's]
-    #[arg(long, value_name = "NAME", env = "HALFROW_STATION")]
+    #[arg(long, value_name = "NAME", env = "HALFROW_STATION", value_parser = why::name)]
     station: Option<String>,
     /// Kill the lane when it sends nothing for this long
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds(0.1..=86_400.0))]

@@ -65,7 +65,7 @@ fn nothing_is_sent_of_a_station_that_is_not_there_and_none_is_made() {
     let folder = tempfile::tempdir().unwrap();
     let sink = "[[sink]]\nname = \"share\"\nfolder = \"share\"\n";
     let sent = send(folder.path(), sink);
-    assert!(sent.code == Some(3) && sent.complained.contains("check that it is there"), "{sent:?}");
+    assert!(sent.code == Some(2) && sent.complained.contains("has no station's results"), "{sent:?}");
     assert_eq!(names(folder.path()), ["plan.toml", "station.toml"]);
 }
 
@@ -182,6 +182,8 @@ fn a_sink_that_is_no_more_is_forgotten_when_the_settings_do_not_name_it() {
         refused.code == Some(2) && refused.complained.contains("take it out of them first"),
         "{refused:?}"
     );
+    let unknown = did(folder.path(), "", &forget.map(|word| if word == "share" { "shore" } else { word }));
+    assert!(unknown.code == Some(2) && unknown.complained.contains("no sink shore"), "{unknown:?}");
     // What cannot be entered in the audit is not forgotten.
     let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
     database.execute_batch(NO_AUDIT).unwrap();
