@@ -38,11 +38,11 @@ pub(crate) struct Demo {
 }
 
 impl Demo {
-    /// A station with `lanes` lanes, 1 to [`MOST_LANES`], whose files are created in `folder`, and whose pages listen
-    /// on `port`.
+    /// A station with `lanes` lanes, 1 to [`MOST_LANES`], whose files are created in `folder`, which must be new or empty, and
+    /// whose pages listen on `port`.
     ///
     /// # Errors
-    /// When the folder already has files of these names, or the system has no room.
+    /// When the folder has something already, or the system has no room.
     pub(crate) fn new(folder: &Path, lanes: usize, port: u16) -> io::Result<Self> {
         let fixtures: Vec<_> = (0..lanes).map(|_| Fixture::start()).collect::<io::Result<_>>()?;
         let lane = |(fixture, name): (&Fixture, usize)| {
@@ -56,6 +56,10 @@ impl Demo {
             "schema = 1\n[station]\nname = \"demo\"\ndata = \"data\"\n[web]\nlisten = \"127.0.0.1:{port}\"\n{lanes}"
         );
         fs::create_dir_all(folder)?;
+        // A station's folder among it would get results of boards that do not exist.
+        if fs::read_dir(folder)?.next().is_some() {
+            return Err(io::ErrorKind::DirectoryNotEmpty.into());
+        }
         let settings = folder.join("station.toml");
         for (path, text) in [(&settings, text.as_str()), (&folder.join("plan.toml"), PLAN)] {
             io::Write::write_all(&mut fs::File::create_new(path)?, text.as_bytes())?;

@@ -1,12 +1,16 @@
 //! The folder of a station, and what is in it.
 
 use std::fs::{self, File, TryLockError};
+use std::io;
 use std::os::unix::ffi::OsStrExt as _;
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use halfrow::files::check_regular;
 use nix::errno::Errno;
+use nix::fcntl::OFlag;
 use nix::unistd::{AccessFlags, access};
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, ErrorCode, OpenFlags, ffi};
@@ -50,6 +54,38 @@ impl Folder {
         if self.0.to_str().is_none() { Err(StoreError::Path { folder: self.0.clone() }) } else { Ok(()) }
     }
 
+    /// Refuses a `station.db` that is a pipe or a device, whose other end SQLite would wait for.
+    pub(super) fn refuse_pipe(&self) -> Result<(), StoreError> {
+        check_regular(&self.database()).map_err(|_| self.no_database("it is a pipe or a device"))
+    }
+
+    /// Refuses a folder without a database, which no station has ever written to.
+    pub(super) fn refuse_no_results(&self) -> Result<(), StoreError> {
+        self.refuse_lost_database()?;
+        let is_there = self.database().try_exists().unwrap_or(true);
+        if is_there { Ok(()) } else { Err(StoreError::NoResults { folder: self.0.clone() }) }
+    }
+
+    /// Refuses the `database` of another program. A station's has a table of its version from the very start.
+    pub(super) fn refuse_foreign_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
+        let version = "SELECT count(*) FROM sqlite_schema WHERE name = 'schema_version'";
+        let counted =
+            tables(database).and_then(|all| Ok((all, database.one(version, &[], |row| row.get::<i64>(0))?)));
+        match counted {
+            Ok((1.., 0)) => Err(self.no_database("its tables are not a station's")),
+            counted => counted
+                .map(drop)
+                .map_err(|source| StoreError::of_file(&self.database(), "to be read", source)),
+        }
+    }
+
+    /// What is in the database's place is something else.
+    fn no_database(&self, why: &str) -> StoreError {
+        let code = ffi::Error::new(ffi::SQLITE_NOTADB);
+        let source = rusqlite::Error::SqliteFailure(code, Some(why.to_owned()));
+        StoreError::of_file(&self.database(), "to be read", source)
+    }
+
     /// Refuses a folder in which a restore is at work, or was when its program was killed: what begins there would be in its way.
     pub(super) fn refuse_unfinished_restore(&self) -> Result<(), StoreError> {
         let is_unfinished = self.0.join(ASIDE).exists() && !self.database().exists();
@@ -59,17 +95,6 @@ impl Folder {
     /// Refuses a folder that was moved away since the start, or whose disk was unmounted: the start made `blobs` in it.
     pub(crate) fn refuse_gone(&self) -> Result<(), StoreError> {
         fs::metadata(self.0.join("blobs")).map(drop).map_err(|source| self.refused(source))
-    }
-
-    /// Refuses a database that is no file, such as a pipe: to open it could take for ever.
-    pub(super) fn refuse_pipe(&self) -> Result<(), StoreError> {
-        let path = self.database();
-        if fs::metadata(&path).is_ok_and(|about| !about.is_file() && !about.is_dir()) {
-            let (code, said) = (ffi::Error::new(ffi::SQLITE_NOTADB), "it is no file, but a pipe or a device");
-            let no_file = rusqlite::Error::SqliteFailure(code, Some(said.to_owned()));
-            return Err(StoreError::of_file(&path, "to be opened", no_file));
-        }
-        Ok(())
     }
 
     /// Refuses a folder that has evidence and no database: no station may start from scratch there.
@@ -107,7 +132,7 @@ impl Folder {
         self.0.join("spool")
     }
 
-    pub(crate) fn refused(&self, source: std::io::Error) -> StoreError {
+    pub(crate) fn refused(&self, source: io::Error) -> StoreError {
         StoreError::Folder { folder: self.0.clone(), source }
     }
 
@@ -121,7 +146,14 @@ impl Folder {
     /// # Errors
     /// [`StoreError`] when another program has it.
     pub(crate) fn lock(&self) -> Result<File, StoreError> {
-        let file = File::options().create(true).truncate(false).write(true).open(self.lock_file());
+        // What a link leads to would be overwritten, and the other end of a pipe waited for.
+        let flags = (OFlag::O_NOFOLLOW | OFlag::O_NONBLOCK).bits();
+        let path = self.lock_file();
+        let file = File::options().create(true).truncate(false).write(true).custom_flags(flags).open(&path);
+        let is_other = fs::symlink_metadata(&path).is_ok_and(|about| !about.is_file());
+        let other =
+            || io::Error::new(io::ErrorKind::InvalidInput, "station.lock there is a link or no regular file");
+        let file = if is_other { Err(other()) } else { file };
         let file = file.map_err(|source| self.refused(source))?;
         let until = Instant::now() + LEAVES;
         loop {
@@ -138,24 +170,26 @@ impl Folder {
     pub(super) fn writer(&self) -> Result<Box<dyn Database>, StoreError> {
         let path = self.database();
         let place = &path;
-        let refused = |doing| move |source: rusqlite::Error| StoreError::of_file(place, doing, source);
-        let writer = Connection::open(&path).map_err(refused("to be opened"))?;
-        writer.busy_timeout(PATIENCE).map_err(refused("to wait"))?;
+        let opened = |doing| move |source: rusqlite::Error| StoreError::of_file(place, doing, source);
+        let writer = Connection::open(&path).map_err(opened("to be opened"))?;
+        writer.busy_timeout(PATIENCE).map_err(opened("to wait"))?;
         writer
             .set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)
             .and_then(|_| writer.execute_batch("PRAGMA wal_autocheckpoint = 0"))
-            .map_err(refused("to keep its log"))?;
+            .map_err(opened("to keep its log"))?;
+        let mut writer: Box<dyn Database> = Box::new(Sqlite::new(writer));
+        // Before the first change: a log is one.
+        self.refuse_foreign_tables(&mut *writer)?;
+        let refused = |doing| move |source| StoreError::of_file(place, doing, source);
         let mode: String = writer
-            .query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))
+            .one("PRAGMA journal_mode = WAL", &[], |row| row.get(0))
             .map_err(refused("a write-ahead log"))?;
         if mode != "wal" {
             return Err(StoreError::NoLog { path, mode });
         }
         // A commit that returned is on the disk. With less, a power cut could undo what was shown.
-        writer
-            .execute_batch("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON")
-            .map_err(refused("to be safe"))?;
-        Ok(Box::new(Sqlite::new(writer)))
+        writer.batch("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON").map_err(refused("to be safe"))?;
+        Ok(writer)
     }
 
     /// A connection that cannot write.

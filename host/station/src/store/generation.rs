@@ -6,11 +6,12 @@
 //! other copy has no number, or an earlier one.
 
 use std::fs::{self, File, Metadata};
-use std::io;
-use std::os::unix::fs::{FileExt as _, MetadataExt as _};
+use std::io::{self, Read as _};
+use std::os::unix::fs::{FileExt as _, MetadataExt as _, OpenOptionsExt as _};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use nix::fcntl::OFlag;
 use rusqlite::{Connection, ffi};
 
 use super::{Database, DatabaseError, Folder, StoreError};
@@ -222,7 +223,12 @@ fn number(file: &File) -> io::Result<Option<u32>> {
 
 /// The numbers that were noted last. Only the first line counts, because the end of a longer one may remain after it.
 fn noted(folder: &Folder) -> Generations {
-    let text = fs::read_to_string(folder.lock_file()).unwrap_or_default();
+    let mut text = String::new();
+    // Of a pipe in its place nobody waits for the other end.
+    let file = File::options().read(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(folder.lock_file());
+    if file.is_ok_and(|mut file| file.read_to_string(&mut text).is_err()) {
+        text.clear();
+    }
     let words = text.lines().next().unwrap_or_default().split(' ').filter(|word| word.len() == 8);
     Generations(words.filter_map(|word| u32::from_str_radix(word, 16).ok()).collect())
 }

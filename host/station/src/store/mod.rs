@@ -173,7 +173,7 @@ impl Store {
     /// # Errors
     /// Like [`Self::open`], and when there is none.
     pub(crate) fn open_existing(folder: &Folder) -> Result<Self, StoreError> {
-        folder.reader()?;
+        folder.refuse_no_results()?;
         Self::open(folder)
     }
 

@@ -51,13 +51,11 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when the database is not there or cannot be read.
     pub fn take(folder: &Folder) -> Result<Self, StoreError> {
-        folder.refuse_lost_database()?;
-        if folder.database().try_exists().is_ok_and(|is_there| !is_there) {
-            return Err(StoreError::NoResults { folder: folder.0.clone() });
-        }
+        folder.refuse_no_results()?;
         generation::refuse_other_log(folder)?;
         let mut reader = folder.reader()?;
         folder.refuse_lost_tables(&mut *reader)?;
+        folder.refuse_foreign_tables(&mut *reader)?;
         let reader = RefCell::new(reader);
         let snapshot = Self { of: Of::Station(folder.clone()), reader };
         let found = snapshot.read("to be read", |reader| {

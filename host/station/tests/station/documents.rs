@@ -135,7 +135,7 @@ fn what_prune_removes_is_a_document() {
     let nowhere = document(&did(&["prune", "--json", "--operator", "engel", "--data", "/nowhere"]));
     assert_eq!(
         (&nowhere["error"]["code"], &nowhere["command"]),
-        (&"store-folder-unusable".into(), &"prune".into())
+        (&"store-without-results".into(), &"prune".into())
     );
 }
 

@@ -273,7 +273,7 @@ fn nothing_is_bound_where_there_is_no_station_and_none_is_made() {
     let folder = folder();
     let data = folder.path().join("data");
     let did = rebind_in(&data, &["--serial", "CAT00017", "--reason", "FPGA exchanged"]);
-    assert!(did.code == Some(3) && did.complained.contains("check that it is there"), "{did:?}");
+    assert!(did.code == Some(2) && did.complained.contains("has no station's results"), "{did:?}");
     assert!(!data.exists());
 }
 

@@ -6,6 +6,7 @@ pub(crate) mod bench;
 pub(crate) mod checked;
 mod ends;
 mod faults;
+mod foreign;
 pub(crate) mod identity;
 mod killed;
 mod killed_lane;
