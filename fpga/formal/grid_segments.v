@@ -1,6 +1,6 @@
 // halfrow_parabolas on rows of any three factors that differ by so many bits: at the second segment's first column S and D are what
 // fpga/DATAPATH.md begins the segment with, S[0] + 2^(k+3) * (Q[0] + Q[1]) and 16Q + G, though neither is loaded there, and from there
-// on D grows by 2G.
+// on D grows by 2G. The next slopes are asked for with a segment's last column but one.
 `default_nettype none
 
 module grid_segments #(
@@ -51,7 +51,7 @@ module grid_segments #(
         if (running) begin
             if (begun == (1 << K) + 1) assert (sum == second && step == next_step);
             if (begun == (1 << K) + 2) assert (step == next_step + {{4{slope_1[23]}}, slope_1, 1'b0});
-            assert (!ask_next || begun == (1 << K) - 1 || begun == 7'd63);
+            assert (ask_next == (begun == (1 << K) - 1 || begun == 7'd63));
         end
 endmodule
 
