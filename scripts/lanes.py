@@ -61,7 +61,8 @@ class Station:
         """Starts the station on what is there, then checks that. Returns an empty text, or what they said is wrong."""
         started = self.start(stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         _, complaints = started.communicate()
-        checked = subprocess.run([self.program, "check", "--data", self.data], capture_output=True, text=True)
-        if started.returncode == 0 and checked.returncode == 0 and "are open" not in checked.stdout:
+        call = [self.program, "check", "--json", "--data", self.data]
+        checked = subprocess.run(call, capture_output=True, text=True)
+        if started.returncode == 0 and checked.returncode == 0 and json.loads(checked.stdout)["open"] == 0:
             return ""
         return complaints + checked.stdout + checked.stderr
