@@ -7,8 +7,10 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use halfrow_protocol::{Decoder, Encoder, Kind};
+use halfrow_protocol::message::RowOut;
+use halfrow_protocol::{Decoder, Encoder, Reply};
 
+use crate::altered::Passing;
 use crate::dice::Dice;
 use crate::parallel::end_beside;
 
@@ -44,7 +46,8 @@ pub enum Suffers {
         /// The share of packets that are copied, 0 to 1.
         rate: f64,
     },
-    /// The last bit of every row is changed, and the CRC with it. No link does that: it is what a judge cannot see through.
+    /// A bit of the last sample of every row is changed, and the CRC with it. No link does that: it is what a judge cannot see
+    /// through.
     Forges,
 }
 
@@ -252,13 +255,13 @@ impl Direction {
         let (mut rest, mut out) = (bytes, Vec::new());
         while let Some(packet) = self.decoder.next(&mut rest) {
             let Ok(packet) = packet else { continue };
-            let mut payload = packet.payload.to_vec();
-            if packet.header.kind == Kind::RowOut.code()
-                && let Some(last) = payload.last_mut()
-            {
-                *last ^= 1;
+            let mut packet = Passing { header: packet.header, payload: packet.payload.to_vec() };
+            if let Some(Reply::RowOut(row)) = packet.reply() {
+                let mut packed = row.packed.to_vec();
+                packed.last_mut().into_iter().for_each(|byte| *byte ^= 1);
+                packet = packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }));
             }
-            self.encoder.encode(&packet.header, |out| out.extend(&payload), &mut out).unwrap();
+            self.encoder.encode(&packet.header, |out| out.extend(&packet.payload), &mut out).unwrap();
         }
         out
     }

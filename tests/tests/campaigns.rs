@@ -85,6 +85,7 @@ fn a_campaign_reports_false_verdicts_and_hangs() {
     let forged = poor_links::run(&cases, SOON, &SavedResults::nothing());
     assert_eq!((forged.false_verdicts().count(), forged.hangs().count()), (4, 0), "{forged}");
     assert!(forged.to_string().contains("false FAIL: 4 of 4"), "{forged}");
+    assert!(forged.0.iter().all(|run| run.headline.contains("samples differ")), "{forged}");
     let given_no_time = poor_links::run(&cases, Duration::ZERO, &SavedResults::nothing());
     assert_eq!(given_no_time.hangs().count(), 4);
 }
