@@ -112,6 +112,7 @@ fn carry(
         end.set_nonblocking(false)?;
         end.set_nodelay(true)?;
         end.set_read_timeout(Some(TICK))?;
+        end.set_write_timeout(Some(TICK))?;
     }
     let still = [Mutex::new(Instant::now()), Mutex::new(Instant::now())];
     std::thread::scope(|scope| {
@@ -158,7 +159,7 @@ impl Direction {
     fn run(
         &mut self,
         mut from: &TcpStream,
-        mut to: &TcpStream,
+        to: &TcpStream,
         way: usize,
         still: &[Mutex<Instant>; 2],
         ended: &AtomicBool,
@@ -168,9 +169,7 @@ impl Direction {
             let read = match from.read(&mut bytes) {
                 Ok(0) => return Ok(()),
                 Ok(read) => read,
-                Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
-                    0
-                }
+                Err(error) if is_timeout(&error) => 0,
                 Err(error) => return Err(error),
             };
             if ended.load(Ordering::Relaxed) {
@@ -180,7 +179,7 @@ impl Direction {
             while !rest.is_empty() {
                 let (now, later) = rest.split_at(self.until_stall(rest.len()));
                 wait_until(*still[way].lock().unwrap(), ended);
-                to.write_all(&self.pass(now))?;
+                write_all(to, &self.pass(now), ended)?;
                 self.stall(now.len(), way, still);
                 rest = later;
             }
@@ -265,6 +264,23 @@ impl Direction {
         }
         out
     }
+}
+
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut)
+}
+
+/// Writes all of `bytes`, unless it ends before the other side has taken them.
+fn write_all(mut to: &TcpStream, mut bytes: &[u8], ended: &AtomicBool) -> io::Result<()> {
+    while !bytes.is_empty() && !ended.load(Ordering::Relaxed) {
+        match to.write(bytes) {
+            Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
+            Ok(written) => bytes = &bytes[written..],
+            Err(error) if is_timeout(&error) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
 }
 
 fn wait_until(until: Instant, ended: &AtomicBool) {

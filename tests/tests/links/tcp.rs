@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use halfrow::link::LinkError;
 use halfrow_tests::not_tested::not_tested;
-use halfrow_tests::patience::LIMIT;
+use halfrow_tests::patience::{LIMIT, come_to_an_end};
+use halfrow_tests::proxy::{Proxy, Suffers};
 use halfrow_tests::served::Served;
 
 use crate::{ends, passes, verify};
@@ -172,4 +173,18 @@ fn a_second_host_is_turned_away_while_a_first_is_connected() {
     // The first host greeted the board, so it holds it for another ten seconds.
     let second = verify(&served.target(), &["--take-over"]);
     assert_eq!(second.code, Some(0), "{}{}", second.stdout, second.stderr);
+}
+
+#[test]
+fn a_proxy_ends_although_nobody_takes_what_it_passes_on() {
+    let board = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = board.local_addr().unwrap().to_string();
+    let proxy = Proxy::before(&address, Suffers::Nothing, Suffers::Nothing, 1);
+    let mut host = TcpStream::connect(proxy.target().trim_start_matches("tcp:")).unwrap();
+    let (mut board, _) = board.accept().unwrap();
+    for end in [&mut host, &mut board] {
+        end.set_write_timeout(Some(Duration::from_millis(100))).unwrap();
+        while end.write(&[0; 1 << 16]).is_ok() {}
+    }
+    come_to_an_end(move || drop(proxy));
 }
