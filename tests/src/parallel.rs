@@ -4,14 +4,16 @@ use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::JoinHandle;
 
-/// Waits for a thread that worked alongside a test, if there is one, when the test needs it no more.
+/// Waits for a thread that worked alongside a test, if there is one, when the test needs it no more. Returns what came of it;
+/// nothing if there is none.
 ///
 /// # Panics
 /// When the thread panicked, which a test that passes would not show; not while the test itself panics.
-pub(crate) fn end_beside<T>(worker: Option<JoinHandle<T>>) {
-    let Some(Err(panic)) = worker.map(JoinHandle::join) else { return };
-    if !std::thread::panicking() {
-        resume_unwind(panic);
+pub(crate) fn end_beside<T>(worker: Option<JoinHandle<T>>) -> Option<T> {
+    match worker?.join() {
+        Ok(result) => Some(result),
+        Err(panic) if !std::thread::panicking() => resume_unwind(panic),
+        Err(_) => None,
     }
 }
 

@@ -108,7 +108,7 @@ impl Served {
         let ended = Arc::new(AtomicBool::new(false));
         let traffic = Arc::new(Mutex::new(Traffic::default()));
         let board = board.parse().unwrap();
-        let thread = std::thread::spawn({
+        let thread: JoinHandle<Result<(), ServeError>> = std::thread::spawn({
             let (ended, traffic) = (Arc::clone(&ended), Arc::clone(&traffic));
             move || {
                 let mut board = Hosted::new(link::open(&board).unwrap().link);
@@ -119,7 +119,10 @@ impl Served {
                 serve(&mut board, Box::new(is_over), &said)
             }
         });
-        Self { target: heard.recv().unwrap(), ended, traffic, thread: Some(thread) }
+        let Ok(target) = heard.recv() else {
+            panic!("no board is served: {:?}", end_beside(Some(thread)));
+        };
+        Self { target, ended, traffic, thread: Some(thread) }
     }
 
     /// The bytes moved for the host that it serves now.
@@ -150,7 +153,12 @@ impl Served {
 impl Drop for Served {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
+        let result = end_beside(self.thread.take());
         // A board whose wire broke has ended as well as any other.
-        end_beside(self.thread.take());
+        if let Some(Err(error)) = result.filter(|it| !matches!(it, Err(ServeError::Board(_))))
+            && !std::thread::panicking()
+        {
+            panic!("the board was served no more: {error:?}");
+        }
     }
 }

@@ -188,3 +188,10 @@ fn a_proxy_ends_although_nobody_takes_what_it_passes_on() {
     }
     come_to_an_end(move || drop(proxy));
 }
+
+/// RFC 5737: nobody has this address.
+#[test]
+#[should_panic(expected = "no board is served: Some(Err(Door")]
+fn a_server_that_cannot_begin_says_why() {
+    drop(Served::on_a_tcp_port("192.0.2.1", "mock"));
+}
