@@ -295,17 +295,23 @@ fn a_window_that_stands_still_ends_the_run() {
 /// Most end with an error, because the host then sends rows for which the board has no room.
 #[test]
 fn a_window_beyond_every_row_makes_no_run_fail() {
-    for which in (0..400).step_by(8) {
-        let mut seen = 0;
+    let (changed, mut errors) = (Arc::new(AtomicUsize::new(0)), 0);
+    let runs = (0..400).step_by(8);
+    for which in runs.clone() {
+        let (mut seen, changes) = (0, Arc::clone(&changed));
         let report = judge_each(&System::TINY, move |toward, mut packet| {
             seen += usize::from(toward == Toward::Host);
             if toward == Toward::Host && seen == which + 1 {
                 packet.header.window = u32::MAX;
+                changes.fetch_add(1, Ordering::Relaxed);
             }
             packet
         });
         assert_ne!(report.verdict(), Verdict::Fail, "packet {which}: {}", report.headline());
+        errors += usize::from(report.verdict() == Verdict::Error);
     }
+    assert_eq!(changed.load(Ordering::Relaxed), runs.len());
+    assert!(2 * errors > runs.len(), "{errors} of {}", runs.len());
 }
 
 /// Only STATUS tells whether the link delivered a request twice.
