@@ -2,22 +2,32 @@
 //!
 //! The photographs are those in the folder `HALFROW_IMAGES`, or in `../shared/kodak` next to the project.
 
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
 use halfrow_tests::photographs;
-use halfrow_tests::program::Folder;
+use halfrow_tests::program::{Ended, Folder};
 use serde_json::Value;
 
-/// The claims of `halfrow paper table1` with these arguments, which must end with `code`; none without photographs.
-#[allow(clippy::print_stdout)]
-fn table_1(code: i32, arguments: &[&str]) -> Option<Vec<Value>> {
+/// The folder in which `halfrow paper table1` was called with these arguments, and how it ended, which must be with `code`; none
+/// without photographs.
+fn table_1(code: i32, arguments: &[&str]) -> Option<(Folder, Ended)> {
     let first = photographs::paths().into_iter().next()?;
-    let images = first.parent().and_then(|folder| folder.to_str()).map(str::to_owned)?;
+    let images = first.parent().unwrap().to_str().unwrap();
     let folder = Folder::new();
-    let call = ["paper", "table1", "--quiet", "-o", "out", "--images", &images];
+    let call = ["paper", "table1", "--quiet", "-o", "out", "--images", images];
     let ended = folder.halfrow(call.into_iter().chain(arguments.iter().copied()));
     assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
+    Some((folder, ended))
+}
+
+/// The claims that such a call writes down.
+#[allow(clippy::print_stdout)]
+fn claims(code: i32, arguments: &[&str]) -> Option<Vec<Value>> {
+    let (folder, ended) = table_1(code, arguments)?;
     println!("{}", ended.stdout);
-    let report: Value = serde_json::from_slice(&folder.read("out/paper.json")).ok()?;
-    report["items"][0]["claims"].as_array().cloned()
+    let report: Value = serde_json::from_slice(&folder.read("out/paper.json")).unwrap();
+    Some(report["items"][0]["claims"].as_array().unwrap().clone())
 }
 
 fn found(claim: &Value) -> f64 {
@@ -30,7 +40,7 @@ const AVERAGES: [f64; 3] = [32.1225, 32.5641, 34.9625];
 
 #[test]
 fn table_1_is_the_paper_s_in_reals_in_integers_and_through_a_board() {
-    let Some(claims) = table_1(0, &["--board", "mock"]) else { return };
+    let Some(claims) = claims(0, &["--board", "mock"]) else { return };
     for (claim, average) in claims.iter().zip(AVERAGES) {
         assert!((found(claim) - average).abs() < 5e-4, "{claim}");
     }
@@ -43,22 +53,12 @@ fn table_1_is_the_paper_s_in_reals_in_integers_and_through_a_board() {
 
 #[test]
 fn a_board_whose_sums_are_not_rounded_is_found() {
-    let Some(claims) = table_1(1, &["--board", "mock,fault=no-rounding"]) else { return };
+    let Some(claims) = claims(1, &["--board", "mock,fault=no-rounding"]) else { return };
     assert!(claims[5..9].iter().any(|claim| found(claim) > 0.0), "{claims:?}");
 }
 
 #[test]
 fn a_board_of_five_taps_is_refused_since_cubic_needs_seven() {
-    assert!(table_1_refusal().is_none_or(|said| said.contains("needs seven taps")));
-}
-
-/// What the call prints for a board of five taps; none without photographs.
-fn table_1_refusal() -> Option<String> {
-    let first = photographs::paths().into_iter().next()?;
-    let images = first.parent()?.to_str()?.to_owned();
-    let folder = Folder::new();
-    let call = ["paper", "table1", "-q", "-o", "out", "--images", &images, "--board", "mock,taps=five"];
-    let ended = folder.halfrow(call);
-    assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
-    Some(ended.stderr)
+    let Some((_, ended)) = table_1(2, &["--board", "mock,taps=five"]) else { return };
+    assert!(ended.stderr.contains("needs seven taps"), "{}", ended.stderr);
 }
