@@ -117,6 +117,11 @@ impl Claim {
     }
 }
 
+/// The largest of `values`, which are 0 or more; NaN if one of them is, so that it is never accepted.
+pub(super) fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |most, value| if value > most || value.is_nan() { value } else { most })
+}
+
 /// Numbers in rows and columns, one CSV file.
 #[derive(Clone, Debug)]
 pub struct Table {

@@ -2,7 +2,7 @@
 
 use halfrow_model::Equidistant;
 
-use super::exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
+use super::exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table, largest};
 use super::svg::Canvas;
 use super::views::{View, ray};
 use super::{Item, PaperError};
@@ -85,7 +85,7 @@ fn farthest_from_column(lens: &Equidistant, view: View) -> f64 {
     let points = lines().into_iter().filter(|line| line.kind == 0).flat_map(|line| line.points);
     let distances =
         points.map(|point| (place(lens, view, point).0 - lens.focal_length() * point.0.to_radians()).abs());
-    distances.fold(0.0, f64::max)
+    largest(distances)
 }
 
 fn map(lens: &Equidistant, view: View, name: &str, caption: &str) -> Picture {

@@ -1,5 +1,6 @@
 //! How well a projection keeps what people notice: straight lines and shapes.
 
+use super::exhibit::largest;
 use super::lines::Line;
 
 /// How far from the middle shapes are measured, in degrees of longitude and latitude: as far as every view shows them.
@@ -13,7 +14,7 @@ pub(super) type Place<'a> = &'a dyn Fn(f64, f64) -> (f64, f64);
 
 /// The largest distance of a point of a line from the line's chord, in pixels.
 pub(super) fn straightness(place: Place<'_>, lines: &[Line]) -> f64 {
-    lines.iter().map(|line| from_chord(place, line)).fold(0.0, f64::max)
+    largest(lines.iter().map(|line| from_chord(place, line)))
 }
 
 fn from_chord(place: Place<'_>, line: &Line) -> f64 {
@@ -23,7 +24,7 @@ fn from_chord(place: Place<'_>, line: &Line) -> f64 {
     let (across, down) = (end_x - x, end_y - y);
     let length = across.hypot(down).max(f64::MIN_POSITIVE);
     let away = |(px, py): &(f64, f64)| ((px - x) * down - (py - y) * across).abs() / length;
-    points.iter().map(away).fold(0.0, f64::max)
+    largest(points.iter().map(away))
 }
 
 /// The mean of |ln(σ1/σ2)| over the directions that are measured; σ1 and σ2 are the singular values of the view's derivative on
@@ -76,11 +77,13 @@ mod tests {
 
     #[test]
     fn a_line_is_as_crooked_as_its_farthest_point_is_from_its_chord() {
-        let line = Line {
+        let lines = [Line {
             directions: vec![(0.0, 0.0), (0.5, 0.0), (1.0, 0.0)],
             held: super::super::lines::Constraint::Straight,
-        };
+        }];
         let bent = |longitude: f64, _| (3.0 * longitude, if longitude == 0.5 { 0.25 } else { 0.0 });
-        assert_eq!(straightness(&bent, &[line]), 0.25);
+        assert_eq!(straightness(&bent, &lines), 0.25);
+        let lost = |longitude: f64, _| (longitude, if longitude == 0.5 { f64::NAN } else { 0.0 });
+        assert!(straightness(&lost, &lines).is_nan(), "a point that is nowhere lies on no line");
     }
 }

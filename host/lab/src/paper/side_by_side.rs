@@ -4,7 +4,7 @@ use halfrow_model::{Camera, Equidistant, Frame, Interpolant, Kernel, Phase, corr
 
 use super::cameras::{self, DSL215, PAPER};
 use super::details::cut;
-use super::exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
+use super::exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table, largest};
 use super::ways::Way;
 use super::{Item, PaperError};
 use crate::Residuals;
@@ -236,7 +236,7 @@ fn edges(facades: &[Facades]) -> Table {
                     Cell::Number(ends[0], 0),
                     Cell::Number(ends[1], 0),
                     Cell::Number(edge.mean_column(), 3),
-                    Cell::Number(distances(edge).into_iter().fold(0.0, f64::max), 3),
+                    Cell::Number(largest(distances(edge).into_iter()), 3),
                 ]
             }));
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use halfrow_model::{Frame, Interpolant, Kernel};
 
-use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
+use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table, largest};
 use super::expected::{
     AVERAGE_TOLERANCE, INTEGER_TOLERANCE, METHODS, PSNR_TOLERANCE, TABLE_1, TABLE_1_AVERAGES,
 };
@@ -187,11 +187,6 @@ fn judge(exhibit: &mut Exhibit, board: &TestedBoard, through: &ThroughBoard, rea
 fn farthest(found: &[f64; 4], real: &[f64; 4]) -> f64 {
     let difference = |method| (found[place(method)] - real[place(method)]).abs();
     largest((0..METHODS.len()).map(difference))
-}
-
-/// The largest of `values`, which are 0 or more; NaN if one of them is, so that it is never accepted.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |most, value| if value > most || value.is_nan() { value } else { most })
 }
 
 fn at_most(what: &str, found: f64, most: f64) -> Claim {
