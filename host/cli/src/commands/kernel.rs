@@ -168,9 +168,9 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
         return Ok(Exit::Pass);
     }
     console::tell(&format!(
-        "{}: {:+.2} dB over Hermite on them; each by the kernel of the others {}; noise gain {:.3}",
+        "{}: {} over Hermite on them; each by the kernel of the others {}; noise gain {:.3}",
         count(images.len(), "photograph"),
-        trained.gain,
+        trained.gain.map_or_else(|| "no measured gain".to_owned(), |gain| format!("{gain:+.2} dB")),
         held_out_text(&trained),
         mean_noise_gain(&trained.kernel)
     ));
@@ -202,7 +202,7 @@ fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Va
     about.insert(
         "figures".to_owned(),
         json!({
-            "gain_over_hermite_db": rounded(trained.gain),
+            "gain_over_hermite_db": trained.gain.map(rounded),
             "held_out_gains_db": trained.held_out.iter().map(|gain| gain.map(rounded)).collect::<Vec<_>>(),
             "mean_noise_gain": rounded(mean_noise_gain(&trained.kernel)),
         }),

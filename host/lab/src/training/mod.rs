@@ -31,8 +31,8 @@ pub struct Trained {
     /// The gain over Hermite on each photograph of a kernel fitted to all the others, in dB; none if the others determine no
     /// kernel, or if the photograph has no detail to gain on.
     pub held_out: Vec<Option<f64>>,
-    /// The gain over Hermite on the photographs that it was fitted to, in dB.
-    pub gain: f64,
+    /// The gain over Hermite on the photographs that it was fitted to, in dB; none if they have no detail to gain on.
+    pub gain: Option<f64>,
 }
 
 /// What keeps a kernel from being fitted or measured.
@@ -98,8 +98,7 @@ pub fn train(
     let held_out = each.iter().map(|equations| {
         let mut others = all.clone();
         others.add(equations, -1.0);
-        let has_detail = equations.error(&Interpolant::Hermite.into()) > EXACT;
-        others.kernel(taps).ok().filter(|_| has_detail).map(|kernel| gain(equations, &kernel))
+        others.kernel(taps).ok().and_then(|kernel| gain(equations, &kernel))
     });
     let held_out = held_out.collect();
     Ok(Trained { gain: gain(&all, &kernel), kernel, held_out })
@@ -122,9 +121,25 @@ fn equations_of(photograph: &RgbImage) -> Result<Equations, TrainingError> {
     Ok(equations.per_sample())
 }
 
-/// How much closer to the photographs the kernel comes than Hermite, in dB.
-fn gain(equations: &Equations, kernel: &Kernel) -> f64 {
-    let hermite = Kernel::from(Interpolant::Hermite);
-    let [hermite, own] = [&hermite, kernel].map(|kernel| equations.error(kernel).max(f64::MIN_POSITIVE));
-    10.0 * (hermite / own).log10()
+/// How much closer to the photographs the kernel comes than Hermite, in dB; none if Hermite leaves no error.
+fn gain(equations: &Equations, kernel: &Kernel) -> Option<f64> {
+    let hermite = equations.error(&Interpolant::Hermite.into());
+    let own = equations.error(kernel).max(f64::MIN_POSITIVE);
+    (hermite > EXACT).then(|| 10.0 * (hermite / own).log10())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At node 0 every interpolant gives G2 alone.
+    #[test]
+    fn a_gain_over_no_error_is_no_figure() {
+        let taps = [90.0, 80.0, 20.0, 60.0, 10.0, 50.0, 40.0];
+        let mut equations = Equations::new();
+        equations.sample(0, 0.0, taps, 20.0);
+        assert_eq!(gain(&equations, &Interpolant::Keys.into()), None);
+        equations.sample(0, 0.0, taps, 21.0);
+        assert_eq!(gain(&equations, &Interpolant::Keys.into()), Some(0.0));
+    }
 }
