@@ -28,42 +28,58 @@ impl Batch {
     }
 }
 
+/// Frames to be corrected by tables and a kernel, and what the oracle makes of them.
+struct Task {
+    tables: Arc<TableSet>,
+    kernel: Kernel,
+    frames: Arc<Vec<Frame>>,
+    corrected: Vec<Frame>,
+}
+
+impl Task {
+    fn of(
+        tables: &Arc<TableSet>,
+        interpolant: Interpolant,
+        frames: &Arc<Vec<Frame>>,
+    ) -> Result<Self, Box<dyn Error>> {
+        let kernel = Kernel::from(interpolant);
+        let corrected =
+            frames.iter().map(|frame| correct(tables, &kernel, frame)).collect::<Result<_, _>>()?;
+        Ok(Self { tables: Arc::clone(tables), kernel, frames: Arc::clone(frames), corrected })
+    }
+
+    /// A benchmark of a wrong result would mean nothing, so it is run once, and its outputs are compared.
+    fn check(&self, name: &str, batch: &Batch) -> Result<(), Box<dyn Error>> {
+        let equal = batch.outputs.iter().zip(&self.corrected).all(|(found, right)| found == right.samples());
+        if equal { Ok(()) } else { Err(format!("{name} differs from the oracle").into()) }
+    }
+}
+
 /// One frame over and over, which stays in the cache, and a batch of frames that do not.
 pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
     let (tables, grid) = (Arc::new(tables(HEIGHT)?), Arc::new(grid(HEIGHT)?));
     let one = Arc::new(vec![frame(HEIGHT, 0)?]);
     let batch = Arc::new(batch()?);
+    let [by_rows, by_grid] = [&tables, &grid].map(|by| Task::of(by, Interpolant::Hermite, &batch));
+    let (by_rows, by_grid) = (by_rows?, by_grid?);
     let mut benchmarks = vec![copy("memcpy", &one), copy("batch memcpy", &batch)];
     for path in ModelPath::available() {
         for interpolant in [Interpolant::Hermite, Interpolant::Keys] {
-            let kernel = Kernel::from(interpolant);
             for (tables, what) in [(&tables, ""), (&grid, " grid")] {
-                check(tables, &kernel, &one[0], path)?;
-                let name = format!("{path} {interpolant}{what}");
-                benchmarks.push(corrector(name, &one, tables, vec![Corrector::new(path, &kernel)?]));
+                let task = Task::of(tables, interpolant, &one)?;
+                benchmarks.push(corrector(format!("{path} {interpolant}{what}"), &task, path, 1)?);
             }
         }
-        let kernel = Kernel::from(Interpolant::Hermite);
-        benchmarks.push(samples(path, &one, &tables, &kernel)?);
-        benchmarks.push(signer(path, &tables, &kernel)?);
-        let threads = if path == ModelPath::Reference { &[][..] } else { &[1, 2] };
-        for &threads in threads {
-            let name = format!("batch {path} on {threads}");
-            let correctors = (0..threads).map(|_| Corrector::new(path, &kernel)).collect::<Result<_, _>>()?;
-            benchmarks.push(corrector(name, &batch, &tables, correctors));
-        }
+        benchmarks.push(samples(path, &Task::of(&tables, Interpolant::Hermite, &one)?)?);
+        benchmarks.push(signer(path, &tables, &Kernel::from(Interpolant::Hermite))?);
         if path != ModelPath::Reference {
-            let name = format!("batch {path} grid");
-            benchmarks.push(corrector(name, &batch, &grid, vec![Corrector::new(path, &kernel)?]));
+            for threads in [1, 2] {
+                benchmarks.push(corrector(format!("batch {path} on {threads}"), &by_rows, path, threads)?);
+            }
+            benchmarks.push(corrector(format!("batch {path} grid"), &by_grid, path, 1)?);
         }
     }
     Ok(benchmarks)
-}
-
-/// A benchmark of a wrong result would mean nothing, so the result is compared first.
-fn check(tables: &TableSet, kernel: &Kernel, frame: &Frame, path: ModelPath) -> Result<(), Box<dyn Error>> {
-    let equal = Corrector::new(path, kernel)?.correct(tables, frame)? == correct(tables, kernel, frame)?;
-    if equal { Ok(()) } else { Err(format!("the path {path} differs from the oracle").into()) }
 }
 
 fn copy(name: &str, frames: &Arc<Vec<Frame>>) -> Benchmark {
@@ -77,21 +93,18 @@ fn copy(name: &str, frames: &Arc<Vec<Frame>>) -> Benchmark {
 }
 
 /// Raw samples, which no [`Frame`] has checked.
-fn samples(
-    path: ModelPath,
-    frames: &Arc<Vec<Frame>>,
-    tables: &Arc<TableSet>,
-    kernel: &Kernel,
-) -> Result<Benchmark, Box<dyn Error>> {
-    let (mut batch, tables) = (Batch::of(frames), Arc::clone(tables));
-    let mut corrector = Corrector::new(path, kernel)?;
-    let run = move || {
+fn samples(path: ModelPath, task: &Task) -> Result<Benchmark, Box<dyn Error>> {
+    let (mut batch, tables) = (Batch::of(&task.frames), Arc::clone(&task.tables));
+    let (name, mut corrector) = (format!("samples {path}"), Corrector::new(path, &task.kernel)?);
+    let mut correct_all = move |batch: &mut Batch| {
         for (frame, output) in batch.frames.iter().zip(&mut batch.outputs) {
-            let _ =
-                black_box(corrector.correct_samples(&tables, black_box(frame.samples()), black_box(output)));
+            let samples = black_box(frame.samples());
+            assert!(black_box(corrector.correct_samples(&tables, samples, black_box(output))).is_ok());
         }
     };
-    Ok(Benchmark { name: format!("samples {path}"), run: Box::new(run) })
+    correct_all(&mut batch);
+    task.check(&name, &batch)?;
+    Ok(Benchmark { name, run: Box::new(move || correct_all(&mut batch)) })
 }
 
 /// A frame of a burst made, corrected and signed.
@@ -110,16 +123,18 @@ fn signer(path: ModelPath, tables: &Arc<TableSet>, kernel: &Kernel) -> Result<Be
     Ok(Benchmark { name: format!("signed {path}"), run: Box::new(run) })
 }
 
-/// Shares the frames equally among as many threads as there are correctors; the calling thread is one of them.
+/// Shares the frames equally among so many threads; the calling thread is one of them.
 fn corrector(
     name: String,
-    frames: &Arc<Vec<Frame>>,
-    tables: &Arc<TableSet>,
-    mut correctors: Vec<Corrector>,
-) -> Benchmark {
-    let (mut batch, tables) = (Batch::of(frames), Arc::clone(tables));
-    let share = batch.frames.len().div_ceil(correctors.len());
-    let run = move || {
+    task: &Task,
+    path: ModelPath,
+    threads: usize,
+) -> Result<Benchmark, Box<dyn Error>> {
+    let (mut batch, tables) = (Batch::of(&task.frames), Arc::clone(&task.tables));
+    let share = batch.frames.len().div_ceil(threads);
+    let correctors = (0..threads).map(|_| Corrector::new(path, &task.kernel));
+    let mut correctors = correctors.collect::<Result<Vec<_>, _>>()?;
+    let mut correct_all = move |batch: &mut Batch| {
         let shares = batch.frames.chunks(share).zip(batch.outputs.chunks_mut(share));
         std::thread::scope(|scope| {
             let mut own = None;
@@ -134,14 +149,15 @@ fn corrector(
             }
         });
     };
-    Benchmark { name, run: Box::new(run) }
+    correct_all(&mut batch);
+    task.check(&name, &batch)?;
+    Ok(Benchmark { name, run: Box::new(move || correct_all(&mut batch)) })
 }
 
 fn correct_share(share: (&mut Corrector, &[Frame], &mut [Vec<u16>]), tables: &TableSet) {
     let (corrector, frames, outputs) = share;
     for (frame, output) in frames.iter().zip(outputs) {
-        // The frames have the tables' size and depth: `check` has seen to it.
-        let _ = black_box(corrector.correct_into(tables, black_box(frame), black_box(output)));
+        assert!(black_box(corrector.correct_into(tables, black_box(frame), black_box(output))).is_ok());
     }
 }
 
