@@ -1,8 +1,6 @@
 //! A run against the mock's clocked core, in the order of a real run: the decoy generation, then the judged one, then other
 //! timings.
 
-use std::iter;
-
 use halfrow::compare::Comparison;
 use halfrow::diagnosis::{Case, Uploaded, diagnose};
 use halfrow::result::{Evidence, FrameReport, FrameTiming, MissingRows, Suspect};
@@ -25,8 +23,6 @@ pub(crate) struct Bench {
     pub(crate) geometry: Geometry,
     pub(crate) generations: [Generation; 2],
     pub(crate) ring: u16,
-    /// Frames of noise after the schedule.
-    pub(crate) noise: usize,
     /// Rows that the board has played before the run.
     pub(crate) rows_before: u16,
 }
@@ -86,7 +82,7 @@ impl Bench {
             Generation { number: 1, tables: decoy, kernel: Kernel::from(Interpolant::Linear) },
             Generation { number: 2, tables, kernel: Kernel::from(judged) },
         ];
-        Self { geometry, generations, ring, noise: 0, rows_before: 0 }
+        Self { geometry, generations, ring, rows_before: 0 }
     }
 
     /// Runs the schedule on a board with `fault` and diagnoses what comes back.
@@ -116,12 +112,11 @@ impl Bench {
         let mut player = Player::new(&options, fault).unwrap();
         let mut tables = Tables::new(&options, fault);
         self.play_before(&mut player, &mut tables);
-        let schedule: Vec<_> = self.schedule().collect();
         let sound = self.sound_frames();
         let mut found: Vec<_> = sound.iter().map(|(_, input, _)| vec![0; input.samples().len()]).collect();
         for (number, (_, input, _)) in sound.iter().enumerate() {
-            let timing = schedule[number].2;
-            if number < 2 || schedule[number - 1].2 != timing {
+            let timing = SCHEDULE[number].2;
+            if number < 2 || SCHEDULE[number - 1].2 != timing {
                 player.flush();
                 fetch(&mut player, &mut found);
                 self.upload(&mut tables, number);
@@ -139,14 +134,10 @@ impl Bench {
         seen
     }
 
-    fn schedule(&self) -> impl Iterator<Item = Scheduled> {
-        SCHEDULE.into_iter().chain(iter::repeat_n((Scene::Noise, 1, LEAST), self.noise))
-    }
-
     /// Every frame of the schedule: its generation, what goes in, and what must come out.
     pub(crate) fn sound_frames(&self) -> Vec<(u8, Frame, Frame)> {
         (1..)
-            .zip(self.schedule())
+            .zip(SCHEDULE)
             .map(|(seed, (shown, generation, _))| {
                 let Generation { number, tables, kernel } = &self.generations[generation];
                 let input = scene(shown, &self.geometry, seed);

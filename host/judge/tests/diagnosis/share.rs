@@ -1,11 +1,6 @@
-//! Measures how many single faults are named exactly.
+//! How many single faults are named exactly.
 
-use std::time::Instant;
-
-use halfrow::result::Evidence;
-use halfrow_model::{Frame, Interpolant};
-
-use crate::bench::{Bench, CaseInput, fault, is_told, narrow, off_centre, wide};
+use crate::bench::{Bench, fault, is_told, narrow, off_centre, wide};
 use crate::scenes::Random;
 
 /// A random fault as in a target string, and the place that must be named.
@@ -84,47 +79,4 @@ fn no_wrong_part_is_named_for_certain() {
     let tally = tally(60);
     assert_eq!((tally.wrong_for_certain, tally.not_named), (0, 0), "{tally:?}");
     assert!(tally.alone >= 45, "{tally:?}");
-}
-
-/// Full-size frames, sixteen of them of noise: a person waits for this diagnosis.
-#[test]
-#[ignore = "a measurement of time"]
-fn full_frames_are_diagnosed_within_two_seconds() {
-    let bench = Bench { noise: 16, ..Bench::new(1920, 1080, 1106.697, 2048, Interpolant::Hermite) };
-    for text in [
-        "stuck-data,bit=5",
-        "stuck-address,bit=6",
-        "stuck-address,bit=10",
-        "row-factor,row=417,bit=12",
-        "row-factor,row=417,bit=4",
-        "kernel-word,node=12,weight=r1,bit=3",
-        "no-rounding",
-        "dead-tap,tap=4,reads=5",
-        "stale-table-hidden",
-        "row-factor,row=417,bit=24",
-    ] {
-        judge_in_time(&bench, text, &bench.play(Some(fault(text))));
-    }
-    let mut upside_down = bench.play(Some(fault("stuck-data")));
-    for Evidence { found, .. } in &mut upside_down.evidence {
-        let samples = found.samples().iter().rev().copied().collect();
-        *found = Frame::new(found.width(), found.depth(), found.phase(), samples).unwrap();
-    }
-    judge_in_time(&bench, "what nothing explains", &upside_down);
-}
-
-#[allow(clippy::print_stdout)]
-fn judge_in_time(bench: &Bench, text: &str, seen: &CaseInput) {
-    let begun = Instant::now();
-    let suspects = bench.judge(seen);
-    let (seconds, first) = (begun.elapsed().as_secs_f64(), &suspects[0]);
-    println!("{text}: {seconds:.2} s, {}: {}", first.place(), first.evidence());
-    assert!(seconds < 2.0, "{text} took {seconds} s");
-}
-
-/// Run with `--ignored --nocapture` to see the share.
-#[test]
-#[ignore = "a measurement"]
-fn share_of_faults_that_are_named() {
-    println!("{:?}", tally(300));
 }
