@@ -6,6 +6,3 @@
 // The fault of the next board of this library, which reads it at power-up; 0 for none.
 extern "C" uint16_t halfrow_fault;
 uint16_t halfrow_fault = 0;
-
-#undef DESIGN
-#define DESIGN(name, Model) OFFER(name, Model, BridgeInputs, BridgeOutputs, clock_bridge)
