@@ -3,6 +3,7 @@
 
 use std::env;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, exit};
 
@@ -178,10 +179,15 @@ fn unit(out: &Path, name: &str, files: &[PathBuf], last: &str) -> PathBuf {
     unit
 }
 
+/// What is in a folder.
+fn entries(within: &Path) -> Vec<PathBuf> {
+    let read = || -> io::Result<Vec<_>> { fs::read_dir(within)?.map(|entry| Ok(entry?.path())).collect() };
+    read().unwrap_or_else(|error| fail(&format!("{} cannot be read: {error}", within.display())))
+}
+
 /// The folders in a folder, sorted by name.
 fn folders(within: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(within).into_iter().flatten().flatten();
-    let mut folders: Vec<_> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    let mut folders: Vec<_> = entries(within).into_iter().filter(|path| path.is_dir()).collect();
     folders.sort();
     folders
 }
@@ -189,13 +195,15 @@ fn folders(within: &Path) -> Vec<PathBuf> {
 /// The CRC-32 of the Verilog and of the parameters, which identifies a simulated board's build (fpga/checks/table.py).
 fn checksum(rtl: &Path) -> u32 {
     let folders = folders(rtl);
-    let files_in =
-        |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut files: Vec<_> = folders.iter().map(PathBuf::as_path).chain([rtl]).flat_map(files_in).collect();
+    let mut files: Vec<_> = folders.iter().map(PathBuf::as_path).chain([rtl]).flat_map(entries).collect();
     files.retain(|path| path.extension().is_some_and(|kind| kind == "v" || kind == "vh"));
     files.sort();
     let mut checksum = crc32fast::Hasher::new();
-    files.iter().flat_map(fs::read).for_each(|text| checksum.update(&text));
+    for file in &files {
+        let text = fs::read(file)
+            .unwrap_or_else(|error| fail(&format!("{} cannot be read: {error}", file.display())));
+        checksum.update(&text);
+    }
     checksum.update(PARAMETERS.as_bytes());
     checksum.finalize()
 }
@@ -213,8 +221,7 @@ fn runs_seldom(file: &Path) -> bool {
 }
 
 fn cpp_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut files: Vec<_> = entries.map(|entry| entry.path()).collect();
+    let mut files = entries(folder);
     files.retain(|path| path.extension().is_some_and(|found| found == "cpp"));
     files.sort();
     files
