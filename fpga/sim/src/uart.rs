@@ -1,4 +1,5 @@
-//! The other end of a UART at the board's pins, with RTS and CTS.
+//! The other end of a UART at the board's pins. It heeds RTS, and never raises CTS: no board under simulation has to wait for its
+//! host. `fpga/bench/halfrow_uart_bench.v` tries that.
 
 use std::collections::VecDeque;
 use std::path::Path;
