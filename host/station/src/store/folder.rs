@@ -170,17 +170,11 @@ impl Folder {
     pub(super) fn writer(&self) -> Result<Box<dyn Database>, StoreError> {
         let path = self.database();
         let place = &path;
-        let opened = |doing| move |source: rusqlite::Error| StoreError::of_file(place, doing, source);
-        let writer = Connection::open(&path).map_err(opened("to be opened"))?;
-        writer.busy_timeout(PATIENCE).map_err(opened("to wait"))?;
-        writer
-            .set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)
-            .and_then(|_| writer.execute_batch("PRAGMA wal_autocheckpoint = 0"))
-            .map_err(opened("to keep its log"))?;
-        let mut writer: Box<dyn Database> = Box::new(Sqlite::new(writer));
+        let refused = |doing| move |source| StoreError::of_file(place, doing, source);
+        let opened = self.opened_to_write().map_err(DatabaseError::from).map_err(refused("to be opened"))?;
+        let mut writer: Box<dyn Database> = Box::new(Sqlite::new(opened));
         // Before the first change: a log is one.
         self.refuse_foreign_tables(&mut *writer)?;
-        let refused = |doing| move |source| StoreError::of_file(place, doing, source);
         let mode: String = writer
             .one("PRAGMA journal_mode = WAL", &[], |row| row.get(0))
             .map_err(refused("a write-ahead log"))?;
@@ -189,6 +183,14 @@ impl Folder {
         }
         // A commit that returned is on the disk. With less, a power cut could undo what was shown.
         writer.batch("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON").map_err(refused("to be safe"))?;
+        Ok(writer)
+    }
+
+    fn opened_to_write(&self) -> Result<Connection, rusqlite::Error> {
+        let writer = Connection::open(self.database())?;
+        writer.busy_timeout(PATIENCE)?;
+        writer.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
+        writer.execute_batch("PRAGMA wal_autocheckpoint = 0")?;
         Ok(writer)
     }
 
