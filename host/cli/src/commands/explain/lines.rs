@@ -127,6 +127,13 @@ const LINES: &[Line] = &[
         place: "`technician` and `remedy` of a result",
     },
     Line {
+        word: "UNSAVED",
+        meaning: "The station could not keep the result of a run, so there is none, and no verdict.",
+        fault: "the station's: its disk, or the folder or the database there",
+        act: "Do what the line says, then test the board again.",
+        place: "the first line of `halfrow-station run`",
+    },
+    Line {
         word: "explain",
         meaning: "A command that tells more about each code of this result.",
         fault: "depends on the code",
