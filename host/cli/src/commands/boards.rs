@@ -121,9 +121,7 @@ fn bitstream_text(board: &BitstreamBoard) -> String {
 /// The result of asking, or else of looking at the device from outside.
 fn state(device: &Found) -> String {
     match &device.answer {
-        Some(Answer::Board { name, datapath }) => {
-            return format!("a halfrow board answers: {}, datapath {datapath}", plain(name));
-        }
+        Some(Answer::Board { name, .. }) => return format!("a halfrow board answers: {}", plain(name)),
         Some(Answer::Held) => return "a halfrow board answers, which another host holds".to_owned(),
         Some(Answer::Foreign { reason }) => return format!("something else answers: {}", plain(reason)),
         Some(Answer::Silent) => return "nothing answers".to_owned(),
