@@ -34,6 +34,9 @@ pub enum DatabaseError {
     /// The system lacks the resources to wait for a server.
     #[error("the system has no room for a connection")]
     Room(#[source] io::Error),
+    /// The role may use no schema of the plant's database.
+    #[error("the role may use no schema there; grant it USAGE on the schema with the tables")]
+    NoSchema,
     /// A column holds something other than it should.
     #[error("column {place} of a row holds {found} where {expected} should be")]
     Column {

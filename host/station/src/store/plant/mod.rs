@@ -153,11 +153,12 @@ impl Plant {
     pub fn connect(address: &PlantAddress) -> Result<Self, StoreError> {
         let mut plant = Self::reach(address)?;
         let found = plant.carry_out("to tell its version", |database| {
-            let there = "SELECT to_regclass('schema_version') IS NOT NULL";
-            if !database.one(there, &[], |row| row.get(0))? {
-                return Ok(0);
+            let there = "SELECT to_regclass('schema_version') IS NOT NULL, current_schema() IS NULL";
+            match database.one(there, &[], |row| Ok((row.get(0)?, row.get(1)?)))? {
+                (true, _) => migrations::newest(database),
+                (false, true) => Err(DatabaseError::NoSchema),
+                (false, false) => Ok(0),
             }
-            migrations::newest(database)
         })?;
         migrations::refuse_unknown_version(&plant.shown, found)?;
         Ok(plant)
