@@ -109,7 +109,8 @@ impl PostSink {
             // It is still working on the same key (draft-ietf-httpapi-idempotency-key-header-07, section 2.7), as after
             // DEADLINE.
             409 if in_progress < MOST_IN_PROGRESS => Err(SinkError::Busy { host, status }),
-            408 | 425 | 429 | 500..=599 => Err(SinkError::Busy { host, status }),
+            // What comes before an answer (RFC 9110, section 15.2) says nothing yet.
+            100..=199 | 408 | 425 | 429 | 500..=599 => Err(SinkError::Busy { host, status }),
             300..=399 | 401 | 403 | 407 => Err(SinkError::Closed { host, status }),
             _ => Err(SinkError::Rejected { host, status, answer: beginning(body, self.token.as_deref()) }),
         }

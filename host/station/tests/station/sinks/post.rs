@@ -146,6 +146,7 @@ fn what_a_server_answers_says_who_waits_for_whom() {
         ("429 slowly", "answers 429; it is asked again later"),
         ("408 slow", "answers 408; it is asked again later"),
         ("425 early", "answers 425; it is asked again later"),
+        ("103 soon", "answers 103; it is asked again later"),
         ("401 who", "check the address and the token"),
         ("403 no", "check the address and the token"),
         ("407 by whom", "check the address and the token"),
