@@ -14,15 +14,16 @@ pub(super) fn of(record: &Record) -> Value {
         RunCause::Operator => "ABORTED".to_owned(),
         _ => ended.verdict.to_string(),
     };
+    let ended_ms = ended_ms(run.started_ms, record.took());
     let whole = (!record.measurements.is_empty()).then(|| {
-        let times = (run.started_ms, ended_ms(run.started_ms, record.took()));
+        let times = (run.started_ms, ended_ms);
         phase(0, "run", times, worst(&record.measurements), record.marginal, &record.measurements)
     });
     let phases: Vec<_> = record.steps.iter().map(|step| of_step(record, step)).chain(whole).collect();
     json!({
         "dut_id": run.serial,
         "start_time_millis": run.started_ms,
-        "end_time_millis": ended_ms(run.started_ms, record.took()),
+        "end_time_millis": phases.iter().filter_map(|it| it["end_time_millis"].as_i64()).fold(ended_ms, i64::max),
         "outcome": outcome,
         "outcome_details": [{ "code": ended.cause.name(), "description": ended.headline }],
         "marginal": record.marginal,
