@@ -82,7 +82,7 @@ pub(super) struct List {
 pub(super) enum PublishError {
     /// The plant has another plan with this name and version.
     #[error(
-        "the plant has another plan {plan} {version}, which runs were judged by; give this one a version of its own"
+        "the plant has another plan {plan} {version}, which runs may have been judged by; give this one a version of its own"
     )]
     OtherContent { plan: String, version: String },
     /// Somebody else published the plan at the same time.
