@@ -133,6 +133,11 @@ impl RunLine {
         self.nth > 0 && matches!(self.verdict, Some(Verdict::Pass | Verdict::Fail))
     }
 
+    /// Whether it is over and counts nowhere.
+    pub(crate) fn is_uncounted(&self) -> bool {
+        self.nth == 0 && self.verdict.is_some()
+    }
+
     fn place(&self) -> Place {
         Place { started_ms: self.started_ms, id: self.id.clone() }
     }

@@ -132,6 +132,7 @@ fn story(visit: &Visit, run: &UnitRun) -> Markup {
                     @if line.is_judgement() {
                         " · " (visit.words.fill("history.nth", &[("number", &line.nth.to_string())]))
                     }
+                    @if line.is_uncounted() { " · " (visit.say("run.uncounted")) }
                 }
             }
             @if let Some(headline) = &line.headline { p { (show::english(visit, headline)) } }
