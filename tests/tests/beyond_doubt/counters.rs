@@ -1,5 +1,6 @@
 //! A board's counters, compared with what the host saw and with each other.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use halfrow::board::{Board, OpenOptions};
@@ -9,8 +10,8 @@ use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::{Altered, Toward, judge, judge_each};
-use halfrow_tests::system::System;
+use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
+use halfrow_tests::system::{System, judge_by_plan, streamed};
 
 use crate::conduct::{fails, passes};
 
@@ -115,6 +116,24 @@ fn a_link_that_is_seen_to_double_may_have_doubled_a_row_that_the_board_counts() 
         vec![packet]
     });
     passes(&report);
+}
+
+/// Nothing but the rows and what was answered reaches the board: it counts no packet that would make up for those requests which
+/// follow a count that was asked for twice.
+#[test]
+fn requests_that_follow_a_count_which_was_lost_are_not_missed_in_it() {
+    let (mut came, mut counts) = (false, BTreeSet::new());
+    let alter = move |toward, packet: Passing| {
+        came |= toward == Toward::Host && packet.is(Kind::RowOut);
+        let is_count = toward == Toward::Board && came && packet.is(Kind::Status);
+        let is_lost = is_count && counts.insert(packet.header.sequence);
+        let is_kept = !is_lost && !packet.is(Kind::RowAck);
+        is_kept.then_some(packet).into_iter().collect()
+    };
+    let candidate = Altered::new(&Options::default(), alter).candidate();
+    let report = judge_by_plan(&streamed(System::TINIEST.plan()), candidate);
+    passes(&report);
+    assert!(report.link.retries > 0);
 }
 
 /// Each row that a board took, each that it did not need and each refusal came in a packet of its own, over whatever link.

@@ -80,14 +80,16 @@ impl Counted {
 }
 
 impl Conversation {
-    /// The board's counters; `clear` clears them.
-    pub(super) fn status(&mut self, clear: bool, step: Step) -> Result<Status, BoardError> {
-        let retries = self.tally.retries;
+    /// The board's counters; `clear` clears them. With the requests that were answered since they were cleared before: if this
+    /// one was repeated, more of them follow, which these counters cannot contain.
+    pub(super) fn status(&mut self, clear: bool, step: Step) -> Result<(Status, u64), BoardError> {
+        let (retries, cleared) = (self.tally.retries, self.counted.from.answered);
         let status = self.ask_for_status(clear, step)?;
+        let answered = self.tally.answered.saturating_sub(cleared);
         if step == Step::Request {
             self.count_after(retries);
         }
-        Ok(status)
+        Ok((status, answered))
     }
 
     fn ask_for_status(&mut self, clear: bool, step: Step) -> Result<Status, BoardError> {

@@ -15,7 +15,15 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
-        self.conversation.status(clear, Step::Request)
+        self.conversation.status(clear, Step::Request).map(|(status, _)| status)
+    }
+
+    /// The board's counters, and the requests that were answered until they came, this one included, since they were cleared.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub(crate) fn status_and_answered(&mut self) -> Result<(Status, u64), BoardError> {
+        self.conversation.status(false, Step::Request)
     }
 
     /// Has the board clear its counters by `clear`, any number but 0, and returns what they were; none if it refuses.
@@ -45,7 +53,8 @@ impl Board {
     pub(crate) fn status_although_stopped(&mut self) -> Result<Status, BoardError> {
         match self.status(false) {
             Err(BoardError::Stopped(_) | BoardError::Timeout { .. }) => {
-                self.conversation.disregarding_stop(|conversation| conversation.status(false, Step::Close))
+                let told = self.conversation.disregarding_stop(|told| told.status(false, Step::Close));
+                told.map(|(status, _)| status)
             }
             status => status,
         }
@@ -55,12 +64,6 @@ impl Board {
     #[must_use]
     pub(crate) fn packets_since_clear(&self) -> u64 {
         self.tally().packets_out.saturating_sub(self.conversation.counted.from.packets_out)
-    }
-
-    /// The requests that were answered since the board's counters were cleared.
-    #[must_use]
-    pub(crate) fn answered_since_clear(&self) -> u64 {
-        self.tally().answered.saturating_sub(self.conversation.counted.from.answered)
     }
 
     /// Whether every packet sent since the board's counters were cleared reached it whole, and once.

@@ -9,11 +9,12 @@ use crate::run::findings::{Attempt, End};
 pub(crate) const MOVED_BY_LINKS: [Counter; 4] =
     [Counter::RowsRepeated, Counter::RowsUnneeded, Counter::Refusals, Counter::ForeignPackets];
 
-/// Compares the board's counters with what the host saw and what the `attempt` let it count. Some must agree over any link,
-/// however poor; the others are compared only where nothing was lost or late.
+/// Compares the board's counters, which it told when it had `answered` so many requests, with what the host saw and what the
+/// `attempt` let it count. Some must agree over any link, however poor; the others are compared only where nothing was lost or
+/// late.
 pub(crate) fn counters(
     board: &Board,
-    status: &Status,
+    (status, answered): (&Status, u64),
     seen: &Observations,
     attempt: &Attempt,
 ) -> Result<Finding, End> {
@@ -38,7 +39,7 @@ pub(crate) fn counters(
         let counted = counter.in_status(status);
         return Err(miscounted(Finding::CounterWrong { counter, counted, right, rule: None }));
     }
-    packets_counted(status, board.answered_since_clear())?;
+    packets_counted(status, answered)?;
     rows_numbered(status, board.packets_numbered())?;
     latencies_counted(status, seen)?;
     if let Some(finding) = &seen.wrong_pauses {

@@ -16,7 +16,7 @@ impl Run<'_> {
     pub(crate) fn judge_what_came(&mut self, seen: &mut Observations) -> Result<(), End> {
         let after = self.tables_after(seen);
         self.findings.checks.lap(CheckName::TablesAfter);
-        let status = self.board.status(false).during(CheckName::Counters)?;
+        let (status, answered) = self.board.status_and_answered().during(CheckName::Counters)?;
         self.sessions.note_damaged(status.damaged());
         self.findings.checks.lap(CheckName::Counters);
         self.unless_misconduct(CheckName::Frames, Ok(()))?;
@@ -24,7 +24,7 @@ impl Run<'_> {
         let Findings { checks, attempt, .. } = &mut *self.findings;
         checks.lap(CheckName::Frames);
         // Counters are only right if all rows came back right: a run that ends early leaves rows inside.
-        let counters = frames.is_ok().then(|| counters(self.board, &status, seen, attempt));
+        let counters = frames.is_ok().then(|| counters(self.board, (&status, answered), seen, attempt));
         attempt.leaves_counters_out = leaves_counters_out(self.board, &status);
         let mut ends = Vec::new();
         let results = [
