@@ -27,6 +27,7 @@ mod lost_rows;
 mod outages;
 mod recordings;
 mod refusals;
+mod reopened;
 mod rule_by_rule;
 mod rules;
 mod second_look;

@@ -18,6 +18,11 @@ impl Board {
         self.conversation.session.number
     }
 
+    /// The sequence number of the last packet sent.
+    pub(crate) fn sequence(&self) -> u16 {
+        self.conversation.sequence
+    }
+
     /// Opens another session over the same link, with a nonce that no earlier one had. Whatever is still under way from the
     /// earlier session is ignored. A host that has the board by now came later, and keeps it.
     ///

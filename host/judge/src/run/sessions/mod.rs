@@ -19,6 +19,8 @@ use second_look::LOOKS;
 const MOST: usize = 16;
 /// The time between two tries. A system takes some tenths of a second to announce a device.
 const TICK: Duration = Duration::from_millis(100);
+/// The sequence numbers kept for a try to open the board, which sends fewer packets.
+const NUMBERS: u16 = 16;
 /// Keeps the nonces of sessions that make copies of old requests harmless apart from those of boards that came back.
 const NONCE: u32 = 1 << 16;
 
@@ -49,6 +51,8 @@ pub(crate) struct Sessions {
     options: OpenOptions,
     /// Those opened within a look to make copies of old requests harmless.
     opened: u32,
+    /// The links opened again, whether or not a board answered there.
+    reopened: u32,
     /// What went over earlier links, which broke; over all of them once the run has ended.
     earlier: Traffic,
     report: LinkReport,
@@ -68,6 +72,7 @@ impl Sessions {
                 ..options.provenance.session_ids.into()
             },
             opened: 0,
+            reopened: 0,
             earlier: Traffic::default(),
             report: LinkReport { name, ..LinkReport::default() },
         }
@@ -108,6 +113,7 @@ impl Sessions {
         end: &End,
     ) -> Result<bool, End> {
         self.earlier.add(board.tally(), board.now());
+        self.options.sequence = board.sequence();
         // The old link, if still open, would keep the new one from being opened.
         board.hang_up();
         let back = self.open_again(patience, end)?;
@@ -157,9 +163,13 @@ impl Sessions {
             tracing::debug!("not there yet: {error}");
             not_opened(&*error)
         })?;
-        // A board that never lost power must not take this HELLO for the one that it has already answered.
-        let nonce = self.options.nonce.wrapping_add(1 + self.report.reconnections.len() as u32);
-        let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
+        // A board that never lost power must not take this HELLO for one that it has already answered, nor this host a late
+        // refusal for the answer to it.
+        self.reopened += 1;
+        let nonce = self.options.nonce.wrapping_add(self.reopened);
+        let sequence = self.options.sequence.wrapping_add((self.reopened as u16).wrapping_mul(NUMBERS));
+        let stop = self.options.stop.after(spent);
+        let options = OpenOptions { nonce, sequence, stop, ..self.options.clone() };
         Board::open_any(link, &options).map_err(|OpenFailed { error, .. }| {
             tracing::debug!("not there yet: {error}");
             error.shows_device().then(|| End::board(CheckName::Identity, &error))
