@@ -1,13 +1,14 @@
-//! Links that are opened again: what the tries send.
+//! Links that are opened again: what the tries send, and how long they take.
 
 use std::collections::BTreeSet;
+use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use halfrow::link::{Candidate, Reopener};
+use halfrow::link::{Candidate, Link, LinkError, Reopener};
 use halfrow::progress::Silent;
-use halfrow::result::Report;
+use halfrow::result::{Finding, Report};
 use halfrow::run::{RunOptions, verify};
 use halfrow_protocol::message::{Hello, Request};
 use halfrow_protocol::{Kind, Packet};
@@ -60,4 +61,62 @@ fn each_try_to_open_a_board_again_has_numbers_of_its_own() {
     let sequences: BTreeSet<_> = greetings.iter().map(|&(sequence, _)| sequence).collect();
     let nonces: BTreeSet<_> = greetings.iter().map(|&(_, nonce)| nonce).collect();
     assert_eq!([greetings.len(), sequences.len(), nonces.len()], [4; 3], "{greetings:?}");
+}
+
+/// A link by the wall's clock, whose first exchange takes a while.
+struct Slow {
+    link: Box<dyn Link>,
+    opened: Instant,
+    is_new: bool,
+}
+
+/// What the first exchange takes: much more than a run on this board in this process.
+const WHILE: Duration = Duration::from_millis(500);
+
+impl Link for Slow {
+    fn exchange(
+        &mut self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, LinkError> {
+        if std::mem::take(&mut self.is_new) {
+            std::thread::sleep(WHILE);
+        }
+        self.link.exchange(outgoing, incoming, wait)
+    }
+
+    fn now(&self) -> Duration {
+        self.opened.elapsed()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        None
+    }
+
+    fn name(&self) -> String {
+        self.link.name()
+    }
+}
+
+#[test]
+fn the_time_in_which_a_board_is_opened_again_counts_once() {
+    let begun = Instant::now();
+    let slow = |link| Box::new(Slow { link, opened: Instant::now(), is_new: true });
+    let first = breaking_at(Kind::RowOut, &Greetings::default());
+    let candidate = Candidate { link: slow(first.link), ..first };
+    let report = report(candidate, Box::new(move || Ok(slow(board(false)))), LIMIT);
+    let all = begun.elapsed().as_secs_f64();
+    passes(&report);
+    let told = report.link.seconds;
+    assert!(told >= 2.0 * WHILE.as_secs_f64() && told <= all, "{told} of {all} s");
+}
+
+#[test]
+fn the_time_for_which_a_board_stayed_away_counts() {
+    let gone = || Err(io::Error::from(io::ErrorKind::NotFound).into());
+    let candidate = breaking_at(Kind::RowOut, &Greetings::default());
+    let report = report(candidate, Box::new(gone), WHILE);
+    assert!(matches!(report.finding, Finding::BoardStayedAway { .. }), "{}", report.headline());
+    assert!(report.link.seconds >= WHILE.as_secs_f64(), "{} s", report.link.seconds);
 }

@@ -126,6 +126,16 @@ impl Sessions {
 
     /// Waits for the board, which went away with `end`, and opens it.
     fn open_again(&mut self, patience: Duration, end: &End) -> Result<Board, End> {
+        let left = Instant::now();
+        let opened = self.open_within(patience, end, left);
+        // The clock of the new link began when it was opened.
+        let on_its_clock = opened.as_ref().map_or(Duration::ZERO, Board::now);
+        self.earlier.seconds += left.elapsed().saturating_sub(on_its_clock);
+        opened
+    }
+
+    /// Tries to open the board, which `left` with `end`, until it is there or `patience` is over.
+    fn open_within(&mut self, patience: Duration, end: &End, left: Instant) -> Result<Board, End> {
         let End::Error { check, cause, finding, .. } = end else { return Err(end.clone()) };
         let reason = finding.as_problem();
         tracing::warn!(
@@ -133,15 +143,13 @@ impl Sessions {
             reason.sentence(),
             patience.as_secs_f64()
         );
-        let left = Instant::now();
         loop {
             let spent = self.earlier.seconds + left.elapsed();
             self.options.stop.check(spent, left.elapsed()).during(*check)?;
             let kept_from_us = match self.try_open(spent) {
                 Ok(board) => {
-                    let away = left.elapsed();
-                    self.earlier.seconds += away;
-                    let back = Reconnection { reason, seconds_away: away.as_secs_f64(), kept_tables: None };
+                    let seconds_away = left.elapsed().as_secs_f64();
+                    let back = Reconnection { reason, seconds_away, kept_tables: None };
                     self.report.reconnections.push(back);
                     return Ok(board);
                 }
