@@ -8,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::descriptor::{Gone, Pump, never_block};
-use super::{Link, LinkError, OpenError, bytes_per_second};
+use super::{HEED, Link, LinkError, OpenError, bytes_per_second};
 use crate::Class;
 use crate::options::{positive, read, set};
 use crate::target::Target;
@@ -136,7 +136,7 @@ impl Link for TcpLink {
         wait: Duration,
     ) -> Result<usize, LinkError> {
         let before = incoming.len();
-        let moved = self.pump.exchange(self.stream.as_raw_fd(), outgoing, incoming, wait);
+        let moved = self.pump.exchange(self.stream.as_raw_fd(), outgoing, incoming, wait.min(HEED));
         self.listen(&incoming[before..]);
         moved.map_err(|gone| match gone {
             Gone::HungUp => self.closed(),
@@ -234,6 +234,18 @@ mod tests {
         assert_eq!(found.kind(), io::ErrorKind::TimedOut);
         drop(hold);
         assert_eq!(in_time(RESOLVED, || Ok(7)).unwrap(), 7);
+    }
+
+    /// Whoever asks a run to stop may send no signal.
+    #[test]
+    fn a_silent_connection_is_not_waited_for_so_long_that_a_request_to_stop_goes_unnoticed() {
+        const LONG: Duration = Duration::from_secs(60);
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let target = format!("tcp:{}", listener.local_addr().unwrap()).parse().unwrap();
+        let mut link = TcpLink::open(&target).unwrap();
+        let begun = Instant::now();
+        assert_eq!(link.exchange(&[], &mut Vec::new(), LONG).unwrap(), 0);
+        assert!(begun.elapsed() < LONG);
     }
 
     #[test]

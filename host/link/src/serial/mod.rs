@@ -17,7 +17,7 @@ use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort, TTYPort};
 
 use super::descriptor::{Gone, Pump, never_block};
 use super::sysfs::usb_device;
-use super::{Link, LinkError, OpenError, bytes_per_second};
+use super::{HEED, Link, LinkError, OpenError, bytes_per_second};
 use crate::ftdi::{self, Speed};
 use crate::target::Target;
 use options::SerialOptions;
@@ -109,7 +109,7 @@ impl Link for SerialLink {
         incoming: &mut Vec<u8>,
         wait: Duration,
     ) -> Result<usize, LinkError> {
-        let moved = self.pump.exchange(self.port.as_raw_fd(), outgoing, incoming, wait);
+        let moved = self.pump.exchange(self.port.as_raw_fd(), outgoing, incoming, wait.min(HEED));
         moved.map_err(|gone| match gone {
             Gone::HungUp => LinkError::Unplugged { link: self.name(), at: self.now() },
             Gone::Failed(source) => LinkError::Failed { link: self.name(), at: self.now(), source },
@@ -228,6 +228,18 @@ mod tests {
     use std::io::Write as _;
 
     use super::*;
+
+    /// Whoever asks a run to stop may send no signal.
+    #[test]
+    fn a_silent_port_is_not_waited_for_so_long_that_a_request_to_stop_goes_unnoticed() {
+        const LONG: Duration = Duration::from_secs(60);
+        let (_board, port) = TTYPort::pair().unwrap();
+        let target = format!("serial:{}", port.name().unwrap()).parse().unwrap();
+        let mut link = SerialLink::open(&target).unwrap();
+        let begun = Instant::now();
+        assert_eq!(link.exchange(&[], &mut Vec::new(), LONG).unwrap(), 0);
+        assert!(begun.elapsed() < LONG);
+    }
 
     /// They are of another session, or of a board that was started again.
     #[test]
