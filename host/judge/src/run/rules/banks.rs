@@ -219,7 +219,7 @@ impl Rules<'_, '_> {
 
     /// The board's window must be no further than if as many rows have entered as there are output banks, plus `freed`.
     fn window_at_most(&self, kept: &FilledBanks, freed: u32) -> Result<(), End> {
-        let rows = self.run.board.window() - kept.first;
+        let rows = self.run.board.window().saturating_sub(kept.first);
         let most = kept.banks + freed + u32::from(self.capabilities.row_banks_in);
         if rows <= most {
             return Ok(());

@@ -100,7 +100,8 @@ impl Rules<'_, '_> {
             // Should the board have taken the row, it would know this one.
             let before = rules.run.board.acknowledged();
             rules.drop_rows()?;
-            let row_sequence = place.row_sequence + (rules.run.board.acknowledged() - before);
+            let further = rules.run.board.acknowledged().saturating_sub(before);
+            let row_sequence = place.row_sequence.saturating_add(further);
             rules.row_refused(rule, RowPlace { row_sequence, ..place }, code)
         })
     }
