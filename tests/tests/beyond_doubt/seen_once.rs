@@ -3,7 +3,7 @@
 use halfrow::result::{BurstCount, CheckName, Finding, Report};
 use halfrow::verdict::Verdict;
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::{Passing, Toward, judge};
+use halfrow_tests::altered::{Passing, Toward, judge, judge_each};
 use halfrow_tests::system::System;
 
 /// The report on a board whose packet number `place` of `kind`, from 0, is altered, and whose packets of the kind `lost` are all
@@ -68,6 +68,24 @@ fn a_table_that_was_another_fails_though_no_entry_is_read_after_that() {
         let failed = report.checks.iter().find(|check| check.name == CheckName::ReadBack).unwrap();
         assert!(failed.detail().contains("CRC"), "{place}: {}", failed.detail());
     }
+}
+
+/// Whatever they are, they are not the entries whose CRC is wrong.
+#[test]
+fn entries_of_another_place_name_no_defect_of_a_table() {
+    // The first byte of the span's `first`, and the first one of its entries (WIRE.md, section 5).
+    const FIRST: usize = 3;
+    const ENTRIES: usize = 7;
+    let report = judge_each(&System::TINY, |toward, mut packet: Passing| {
+        let changed: &[usize] = match packet.reply() {
+            Some(Reply::TableCrc(_)) if toward == Toward::Host => &[0],
+            Some(Reply::TableRead(_)) if toward == Toward::Host => &[FIRST, ENTRIES],
+            _ => &[],
+        };
+        changed.iter().for_each(|&byte| packet.payload[byte] ^= 1);
+        packet
+    });
+    assert_eq!((report.verdict(), &report.finding), (Verdict::Fail, &Finding::TableCrcWrong {}));
 }
 
 /// What a board says under its own CRC is no fault of a link's.

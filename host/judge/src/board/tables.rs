@@ -135,7 +135,7 @@ impl Board {
                 Span { table: port.table, bank, port: port.port, first: first as u16, count: count as u16 };
             let read =
                 self.conversation.request(&Request::TableRead(span), Step::Request, |reply| match reply {
-                    Reply::TableRead(entries) => Some(entries.bytes.to_vec()),
+                    Reply::TableRead(entries) if entries.span == span => Some(entries.bytes.to_vec()),
                     _ => None,
                 })?;
             bytes.extend(read);
