@@ -30,6 +30,9 @@ const BREATH: Duration = Duration::from_millis(100);
 /// The shortest wait for incoming bytes: the reading thread may have been kept from running for as long as its caller.
 const LOOK: Duration = Duration::from_millis(20);
 
+/// The longest wait for the last bytes to be written. By then a board frees itself.
+const LAST: Duration = Duration::from_secs(10);
+
 /// After so many writes in a row of which the device took nothing, it is assumed that it never will.
 const VAIN: u32 = 2;
 
@@ -195,18 +198,26 @@ impl Threads {
     pub(super) fn errors(&self) -> LineErrors {
         self.shared.queues().errors
     }
+
+    /// Waits until everything is written, at most for `patience`, but not for a device that takes nothing.
+    fn write_out(&self, patience: Duration) {
+        let begun = Instant::now();
+        let mut queues = self.shared.queues();
+        while queues.outgoing.len() + queues.in_flight > 0
+            && !queues.is_over
+            && queues.in_vain < VAIN
+            && begun.elapsed() < patience
+        {
+            queues = self.shared.wait(queues, BREATH);
+        }
+    }
 }
 
 impl Drop for Threads {
-    /// Waits until everything is written, since the last packets of a session free the board, but not for a device that takes
-    /// nothing.
+    /// Waits until everything is written, since the last packets of a session free the board.
     fn drop(&mut self) {
-        let mut queues = self.shared.queues();
-        while queues.outgoing.len() + queues.in_flight > 0 && !queues.is_over && queues.in_vain < VAIN {
-            queues = self.shared.wait(queues, BREATH);
-        }
-        queues.is_over = true;
-        drop(queues);
+        self.write_out(LAST);
+        self.shared.queues().is_over = true;
         self.shared.changed.notify_all();
         for thread in self.handles.drain(..) {
             // A thread that panicked has already made the link fail.
@@ -236,6 +247,8 @@ mod tests {
         says: Mutex<VecDeque<Result<Vec<u8>, UsbFailure>>>,
         heard: Arc<Mutex<Vec<u8>>>,
         stuck: bool,
+        /// Whether it takes only a byte at a time, after a while.
+        trickles: bool,
         /// Whether reading panics.
         panics: bool,
     }
@@ -270,7 +283,8 @@ mod tests {
                 return Ok(0);
             }
             // A device takes only what it has room for.
-            let taken = bytes.len().min(1000);
+            let taken = bytes.len().min(if self.trickles { 1 } else { 1000 });
+            thread::sleep(if self.trickles { wait } else { Duration::ZERO });
             self.heard.lock().unwrap().extend_from_slice(&bytes[..taken]);
             Ok(taken)
         }
@@ -339,6 +353,17 @@ mod tests {
         assert!(taken <= OUTGOING + WRITE, "{taken}");
         drop(threads);
         assert!(begun.elapsed() < LONG, "{:?}", begun.elapsed());
+    }
+
+    /// At this speed what waits would take it more than half an hour.
+    #[test]
+    fn a_device_that_takes_a_byte_now_and_then_holds_up_no_end() {
+        let threads = threads(Device { trickles: true, ..Device::default() });
+        let begun = Instant::now();
+        threads.exchange(&[0; OUTGOING], &mut Vec::new(), LONG).unwrap();
+        threads.write_out(BREATH);
+        assert!(begun.elapsed() < LONG, "{:?}", begun.elapsed());
+        threads.shared.queues().is_over = true;
     }
 
     #[test]
