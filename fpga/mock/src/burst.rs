@@ -178,10 +178,8 @@ impl Bursts {
                 burst.begun += 1;
                 self.blank(player, blanking);
             } else {
-                // Meanwhile the rest of the last frame leaves.
-                (burst.held_back, burst.ended) = (wanted, !wanted);
-                let rest = u64::from(player.delay()).saturating_sub(burst.since_row);
-                self.blank(player, rest);
+                burst.ended = !wanted;
+                self.rest(player, wanted, end);
                 break;
             }
         }
@@ -216,6 +214,21 @@ impl Bursts {
             if let Some(leaving) = leaving {
                 self.signer.collect(leaving, now);
             }
+        }
+    }
+
+    /// Lets the rest of the last frame leave. If another one is `wanted`, which has no free record, its blanking passes too, until
+    /// about `end`: only then is it held back.
+    fn rest(&mut self, player: &mut Player, wanted: bool, end: u64) {
+        let since_row = |burst: &Option<Burst>| burst.as_ref().map_or(u64::MAX, |burst| burst.since_row);
+        let rest = u64::from(player.delay()).saturating_sub(since_row(&self.burst));
+        self.blank(player, rest);
+        let blanking = self.burst.as_ref().map_or(0, |burst| burst.plan.frame_blanking);
+        let blanking = u64::from(blanking).saturating_sub(since_row(&self.burst));
+        let passes = if wanted { blanking.min(end.saturating_sub(player.now())) } else { 0 };
+        self.blank(player, passes);
+        if let Some(burst) = &mut self.burst {
+            burst.held_back = wanted && passes == blanking;
         }
     }
 
@@ -273,6 +286,35 @@ mod tests {
         bursts.run(&mut player, &mut tables, u64::MAX);
         assert_eq!((bursts.state(), bursts.signer.records.len()), (BurstState::Ended, 3));
         player.now()
+    }
+
+    /// Whether each of three frames was held back, and the pixel clocks of all, if the record of the first is freed when the blanking
+    /// of the third, 1000 pixel clocks, has passed for `waited`. There are two records.
+    fn held_back(waited: u64) -> (Vec<bool>, u64) {
+        let options = Options { records: 2, ..Options::default() };
+        let (mut player, mut tables) = (Player::new(&options, None).unwrap(), Tables::new(&options, None));
+        let settings =
+            Settings { width: 64, height: 4, centre2: 63, depth: Depth::Eight, blanking: 0, gap_seed: 0 };
+        player.configure(settings).unwrap();
+        let mut bursts = Bursts::new(&options, None);
+        let plan = Plan { burst: 1, seed: 1, first_frame: 0, frame_blanking: 1000, mode: BurstMode::Fresh };
+        bursts.start(plan, 3);
+        bursts.run(&mut player, &mut tables, 256 + 1000 + 256 + waited);
+        let first: Vec<_> = bursts.records_from(0).unwrap().map(|record| record.held_back).collect();
+        let others = bursts.records_from(1).unwrap().count();
+        bursts.run(&mut player, &mut tables, u64::MAX);
+        assert_eq!((first.len(), others, bursts.state()), (2, 1, BurstState::Ended));
+        let all = bursts.records_from(1).unwrap().map(|record| record.held_back);
+        (first.into_iter().take(1).chain(all).collect(), player.now())
+    }
+
+    /// By AT-SPEED.md, Time.
+    #[test]
+    fn a_frame_is_held_back_only_if_no_record_is_free_when_its_blanking_has_passed() {
+        let clocks = 3 * 256 + 2 * 1000 + 44;
+        assert_eq!(held_back(500), (vec![false; 3], clocks));
+        assert_eq!(held_back(999), (vec![false; 3], clocks));
+        assert_eq!(held_back(1000), (vec![false, false, true], clocks));
     }
 
     /// Neither blanking is visible from outside, where a frame shows only its samples and latencies.
