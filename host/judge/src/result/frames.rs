@@ -61,7 +61,7 @@ pub struct FrameReport {
     pub first_rows: Option<usize>,
     /// Rows that came back.
     pub rows: usize,
-    /// The others.
+    /// Rows that did not come back.
     #[serde(default, skip_serializing_if = "MissingRows::is_empty")]
     pub missing: MissingRows,
     /// Seconds on the wall clock from when the frame before it had come back until this one had.
