@@ -200,7 +200,7 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
             @if line.is_judgement() {
                 (show::pair(visit.say("run.judgement"), line.nth))
             }
-            @if line.is_uncounted() { (show::pair(visit.say("run.judgement"), visit.say("run.uncounted"))) }
+            @if line.is_uncounted() { (show::pair(visit.say("run.counts"), visit.say("run.no"))) }
             (show::pair(visit.say("run.board"), html! {
                 (show::said(&run.target))
                 @if let Some(board) = board { " · " (show::said(&board.name)) " (" (show::said(&board.kind)) ")" }

@@ -236,20 +236,6 @@ fn a_run_s_page_says_all_of_it_and_gives_it_to_others() {
     }
 }
 
-/// As of a job that was claimed again meanwhile, or of the board that checks a shift.
-#[test]
-fn a_run_that_does_not_count_is_shown_as_such() {
-    let mut made = Made::new();
-    let id = made.run(&Run::of("S1", End::Pass));
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
-    let served = Served::of(made);
-    let pages = [format!("/runs/{id}"), "/unit?serial=S1".to_owned()];
-    let told = || pages.iter().filter(|page| served.page(page).contains("does not count")).count();
-    assert_eq!(told(), 0);
-    database.execute("UPDATE run SET nth = 0", []).unwrap();
-    assert_eq!(told(), 2);
-}
-
 #[test]
 fn a_run_whose_record_is_damaged_is_told_as_such() {
     let mut made = Made::new();

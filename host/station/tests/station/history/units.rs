@@ -53,17 +53,23 @@ fn runs_that_do_not_count_are_no_judgements_of_a_unit() {
     let served = Served::of(made);
     let told = |path: &str| {
         let page = served.page(path);
-        ["First FAIL, in the end PASS", " · judgement ", "Number of this judgement"]
-            .map(|words| page.contains(words))
+        [
+            "First FAIL, in the end PASS",
+            " · judgement ",
+            "Number of this judgement",
+            " · does not count",
+            "Counts in yields",
+        ]
+        .map(|words| page.contains(words))
     };
-    assert_eq!(told("/unit?serial=HR%3AMOCK%3A1"), [false; 3]);
-    assert_eq!(told(&format!("/runs/{}", ids[0])), [false; 3]);
+    assert_eq!(told("/unit?serial=HR%3AMOCK%3A1"), [false, false, false, true, false]);
+    assert_eq!(told(&format!("/runs/{}", ids[0])), [false, false, false, false, true]);
     // The lanes' page shows local times.
     assert!(served.page("/unit?serial=S1").contains(">2026-11-01 00:00:00</time> UTC"));
     assert_eq!(served.get("/unit?serial=").status, 404);
     assert!(!served.get("/unit?serial=").text().contains("serial number ."));
     assert!(served.page("/history?serial=S2&serial=S1").contains("/unit?serial=S1"));
     // The control.
-    assert_eq!(told("/unit?serial=S1"), [true, true, false]);
-    assert_eq!(told(&format!("/runs/{}", ids[2])), [false, false, true]);
+    assert_eq!(told("/unit?serial=S1"), [true, true, false, false, false]);
+    assert_eq!(told(&format!("/runs/{}", ids[2])), [false, false, true, false, false]);
 }
