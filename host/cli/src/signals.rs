@@ -1,7 +1,8 @@
 //! Signals that end a command: Ctrl-C, SIGTERM, and SIGHUP from a terminal or connection that is gone.
 //!
 //! A command with a board asks for them ([`stop`]): the first one is noted, so that the command can end in order, and a second
-//! ends the program at once, unless it is the first one again ([`AGAIN`]). Any other command ends at the first. However it ends, nothing half written stays.
+//! ends the program at once, unless it is the first one again ([`AGAIN`]). Any other command ends at the first. However it ends,
+//! nothing half written stays.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
