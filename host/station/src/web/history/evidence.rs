@@ -40,13 +40,23 @@ pub(super) async fn attached(
 ) -> Result<(Vec<u8>, Attachment), Trouble> {
     let look = move |now: &Snapshot| {
         let Some(UnitRun { attachments, .. }) = unit::run_of(now, &run)? else { return Ok(None) };
-        let Some(one) = attachments.into_iter().find(|one| one.sha256 == hash) else { return Ok(None) };
-        match now.evidence(&one.sha256) {
-            Err(StoreError::Blob(error)) if error.is_gone() => Ok(None),
-            bytes => Ok(bytes?.map(|bytes| (bytes, one))),
-        }
+        read(now, &attachments, &hash)
     };
     app.look(visit, look).await?.ok_or_else(|| Trouble::missing(visit))
+}
+
+/// The bytes of the one of `attachments` that has this hash, and what is known of it; none if none has it, or it is not there any
+/// more.
+pub(super) fn read(
+    now: &Snapshot,
+    attachments: &[Attachment],
+    hash: &str,
+) -> Result<Option<(Vec<u8>, Attachment)>, StoreError> {
+    let Some(one) = attachments.iter().find(|one| one.sha256 == hash) else { return Ok(None) };
+    match now.evidence(hash) {
+        Err(StoreError::Blob(error)) if error.is_gone() => Ok(None),
+        bytes => Ok(bytes?.map(|bytes| (bytes, one.clone()))),
+    }
 }
 
 /// The media type that browsers are given, and whether they show the content: pictures and text, and nothing that could

@@ -12,14 +12,14 @@ use maud::{Markup, html};
 use serde::Deserialize as _;
 use serde_json::Value;
 
-use super::evidence::attached;
+use super::evidence::{attached, read};
 use super::show;
 use crate::export;
 use crate::history::runs::RunLine;
-use crate::history::unit;
+use crate::history::unit::{self, UnitRun};
 use crate::lane::kept_frame::{KeptFrame, View};
 use crate::record::{Attachment, Record};
-use crate::store::{Snapshot, StoreError};
+use crate::store::Snapshot;
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -44,27 +44,21 @@ pub(super) async fn difference(
     visit: Visit,
     Path((run, found, expected)): Path<(String, String, String)>,
 ) -> Result<Response, Trouble> {
-    let record = app
-        .look(&visit, {
-            let run = run.clone();
-            move |now| recorded(now, &run)
-        })
-        .await?;
-    let found = attached(&app, &visit, run.clone(), found).await?;
-    let expected = attached(&app, &visit, run, expected).await?;
+    let look = move |now: &Snapshot| {
+        let Some(UnitRun { line, attachments, .. }) = unit::run_of(now, &run)? else { return Ok(None) };
+        let [found, expected] = [&found, &expected].map(|hash| read(now, &attachments, hash));
+        let record = line.record_sha256.and_then(|hash| export::record(now, &hash).ok());
+        Ok(found?.zip(expected?).map(|frames| (frames, record)))
+    };
+    let looked = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
     let made = move || {
-        let missing = record.and_then(|record| missing(&record, &found.1)).unwrap_or_default();
+        let ((found, expected), record) = looked;
+        let missing = record.and_then(|(record, _)| missing(&record, &found.1)).unwrap_or_default();
         let (found, expected) = (decoded(&found)?, decoded(&expected)?);
         pictures::differences(&expected, &found, &missing).ok()
     };
     let picture = app.blocking(&visit, made).await?;
     picture.map(answer).ok_or_else(|| Trouble::missing(&visit))
-}
-
-/// The record of a run, if it can be read.
-fn recorded(now: &Snapshot, run: &str) -> Result<Option<Record>, StoreError> {
-    let hash = unit::run_of(now, run)?.and_then(|run| run.line.record_sha256);
-    Ok(hash.and_then(|hash| export::record(now, &hash).ok()).map(|(record, _)| record))
 }
 
 /// The rows that did not come back of the frame that an attachment holds.
