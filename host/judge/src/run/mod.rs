@@ -41,7 +41,7 @@ use crate::verdict::Cause;
 use findings::conclude::{self, Begun};
 use findings::{End, Findings};
 use frames::observations::Observations;
-use plan::misfit as misfits;
+use plan::misfit::check_frames;
 use sessions::Sessions;
 pub(crate) use steps::NotAllJudged;
 use steps::Run;
@@ -52,7 +52,7 @@ pub use findings::finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
 pub(crate) use frames::prepared::PrepareError;
 pub(crate) use golden::{CannotJudge, GoldenError};
 pub use options::RunOptions;
-pub use plan::misfit::{Misfit, misfit};
+pub use plan::misfit::{Misfit, check_fit};
 pub use plan::parts::{Part, Selection};
 pub use plan::prices::{Prices, Rates, usual_capabilities};
 pub use plan::variations::{Build, Vary};
@@ -118,7 +118,7 @@ fn run_to_report(
     progress: &dyn Progress,
 ) -> Result<Finished, Misfit> {
     plan.check_length()?;
-    misfits::check_frames(plan)?;
+    check_frames(plan)?;
     let begun = Begun::now();
     let Candidate { target, kind, link, reopen } = candidate;
     let mut findings = Findings::new(target, kind);

@@ -8,7 +8,7 @@ use super::frames::observations::Observations;
 use super::frames::prepared::{self, PrepareError, Prepared};
 use super::golden::{self, CannotJudge};
 use super::options::RunOptions;
-use super::plan::misfit::misfit;
+use super::plan::misfit::check_fit;
 use super::plan::patterns::patterns;
 use super::plan::variations::Build;
 use super::plan::{Generation, Plan, Segment};
@@ -180,11 +180,8 @@ impl Run<'_> {
                 Finding::HardwareRequired { board: self.findings.board.kind },
             );
         }
-        if let Some(misfit) = misfit(&self.plan.tables, &self.plan.kernel, &self.board.capabilities) {
-            let end = error(Cause::Refused, Problem::of(&misfit).into());
-            self.findings.misfit = Some(misfit);
-            return end;
-        }
+        check_fit(&self.plan.tables, &self.plan.kernel, &self.board.capabilities)
+            .map_err(|misfit| self.findings.refuse(misfit))?;
         let (name, wire) = (self.board.capabilities.name.clone(), self.board.welcome.version);
         let datapath = datapath_of(&self.plan.tables).id();
         self.findings.checks.passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath });

@@ -9,7 +9,7 @@ use super::PaperError;
 use halfrow::board::Board;
 use halfrow::correction::Correction;
 use halfrow::progress::Progress;
-use halfrow::run::misfit;
+use halfrow::run::check_fit;
 use halfrow::target::BoardKind;
 
 /// An open session, with counts of what it has streamed.
@@ -58,7 +58,7 @@ impl TestedBoard {
     /// # Errors
     /// [`PaperError::Misfit`] when it does not.
     pub(crate) fn fits(&self, tables: &TableSet, kernel: &Kernel) -> Result<(), PaperError> {
-        misfit(tables, kernel, self.board.capabilities()).map_or(Ok(()), |misfit| Err(misfit.into()))
+        Ok(check_fit(tables, kernel, self.board.capabilities())?)
     }
 
     /// Corrects `inputs` with these tables and this kernel, under a new generation.

@@ -29,10 +29,8 @@ impl Job<'_> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
         let options = self.arguments.board.open_options(&context.settings)?;
         Board::with(candidate.link, &options, |board| {
-            match run::misfit(&self.chosen.tables, &self.chosen.kernel, board.capabilities()) {
-                None => self.stream(board, places, progress)?,
-                Some(misfit) => return Err(misfit.into()),
-            }
+            run::check_fit(&self.chosen.tables, &self.chosen.kernel, board.capabilities())?;
+            self.stream(board, places, progress)?;
             Ok(candidate.kind.confirmed_by(board.capabilities().nature))
         })?
     }

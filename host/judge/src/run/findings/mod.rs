@@ -10,9 +10,10 @@ pub(super) mod levels;
 use std::mem;
 
 use crate::board::Board;
-use crate::result::{BoardReport, Doubt, SoakReport, WithinReport};
+use crate::result::{BoardReport, CheckName, Doubt, Problem, SoakReport, WithinReport};
 use crate::run::Misfit;
 use crate::target::BoardKind;
+use crate::verdict::Cause;
 use checks::Checks;
 
 pub(super) use end::{During, End};
@@ -75,6 +76,13 @@ impl Findings {
     pub(crate) fn begin_again(&mut self) {
         self.attempt = Attempt::default();
         self.checks.begin_again();
+    }
+
+    /// Notes that the board cannot take what the plan uploads, which ends the run without a report.
+    pub(crate) fn refuse(&mut self, misfit: Misfit) -> End {
+        let end = End::error(CheckName::Identity, Cause::Refused, Problem::of(&misfit));
+        self.misfit = Some(misfit);
+        end
     }
 
     /// Notes what the board says about itself.

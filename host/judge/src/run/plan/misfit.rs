@@ -105,12 +105,12 @@ pub(crate) fn check_frames(plan: &Plan) -> Result<(), Misfit> {
     })
 }
 
-/// Why a board with these capabilities cannot take the tables and the kernel, if it cannot.
-#[must_use]
-pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<Misfit> {
-    if let Err(unknown) = capabilities.known_datapath() {
-        return Some(unknown.into());
-    }
+/// Checks that a board with these capabilities can take the tables and the kernel.
+///
+/// # Errors
+/// [`Misfit`] when it cannot.
+pub fn check_fit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Result<(), Misfit> {
+    capabilities.known_datapath()?;
     let geometry = tables.geometry();
     let (width, height) = (geometry.width(), geometry.height());
     let (most_width, most_height) = (capabilities.max_width.into(), capabilities.max_height.into());
@@ -122,31 +122,33 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
                 remedy = format!("{remedy},max-height={height}");
             }
         }
-        return Some(Misfit::Size { width, height, most_width, most_height, remedy });
+        return Err(Misfit::Size { width, height, most_width, most_height, remedy });
     }
     let bits = geometry.depth().bits();
     if !capabilities.sample_depths().has(bits as u8) {
-        return Some(Misfit::Depth { bits });
+        return Err(Misfit::Depth { bits });
     }
-    if let Some(misfit) = grid_misfit(tables, capabilities) {
-        return Some(misfit);
-    }
+    check_grid(tables, capabilities)?;
     if kernel.taps() == Taps::Seven && capabilities.taps < 7 {
-        return Some(Misfit::Taps);
+        return Err(Misfit::Taps);
     }
-    tables.check_ring(usize::from(capabilities.ring)).err().map(Misfit::Ring)
+    Ok(tables.check_ring(usize::from(capabilities.ring))?)
 }
 
-/// Why a board cannot take the grid, if the tables are one and it cannot.
-fn grid_misfit(tables: &TableSet, capabilities: &Capabilities) -> Option<Misfit> {
-    let shape = tables.shape()?;
-    let Some(grids) = grids(capabilities) else { return Some(Misfit::NoGrids) };
+/// Checks that a board can take the grid, if the tables are one.
+fn check_grid(tables: &TableSet, capabilities: &Capabilities) -> Result<(), Misfit> {
+    let Some(shape) = tables.shape() else { return Ok(()) };
+    let grids = grids(capabilities).ok_or(Misfit::NoGrids)?;
     let (entries, most) = (tables.entries().len(), usize::from(grids.entries));
     if entries > most {
-        return Some(Misfit::GridEntries { entries, most });
+        return Err(Misfit::GridEntries { entries, most });
     }
-    let k = GridShape::K.into_iter().find(|&k| grids.takes(k as u8))?;
-    (!grids.takes(shape.k() as u8)).then(|| Misfit::GridPitch { pitch: shape.column_pitch(), taken: 1 << k })
+    match GridShape::K.into_iter().find(|&k| grids.takes(k as u8)) {
+        Some(k) if !grids.takes(shape.k() as u8) => {
+            Err(Misfit::GridPitch { pitch: shape.column_pitch(), taken: 1 << k })
+        }
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]
@@ -167,7 +169,7 @@ mod tests {
             let plan = Plan::new(tables.clone(), kernel.clone());
             let mut board = usual_capabilities(&plan, BoardNature::Hardware);
             board.grids.iter_mut().for_each(|grids| grids.ks = ks);
-            let said = misfit(&tables, &kernel, &board).map(|misfit| misfit.to_string());
+            let said = check_fit(&tables, &kernel, &board).err().map(|misfit| misfit.to_string());
             let remedy = columns.map(|columns| format!("set the nodes of a grid to one every {columns}"));
             let is_right = match (&said, &remedy) {
                 (Some(said), Some(remedy)) => said.ends_with(remedy),

@@ -2,15 +2,13 @@
 
 use std::time::Duration;
 
-use super::misfit::Misfit;
 use super::parts::{Part, Selection};
 use super::prices::{Prices, Rates};
 use super::{AtSpeed, Plan};
 use crate::coverage::{self, Faults, FaultsError};
-use crate::result::{CheckName, CoveragePoint, Problem, WithinPart, WithinReport};
+use crate::result::{CheckName, CoveragePoint, WithinPart, WithinReport};
 use crate::run::findings::{During, End};
 use crate::run::steps::Run;
-use crate::verdict::Cause;
 use crate::words::hertz;
 
 /// The share of the time that is kept for what has no price: a retry, a slow host.
@@ -83,12 +81,7 @@ impl Run<'_> {
                 self.findings.within = Some(report);
                 Ok(Plan { parts: Some(selection), ..self.plan.clone() })
             }
-            Err(error) => {
-                let misfit = Misfit::Within(error);
-                let end = End::error(CheckName::Identity, Cause::Refused, Problem::of(&misfit));
-                self.findings.misfit = Some(misfit);
-                Err(end)
-            }
+            Err(error) => Err(self.findings.refuse(error.into())),
         }
     }
 
