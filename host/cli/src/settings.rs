@@ -21,8 +21,8 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 use halfrow::call::{self, MOST_SECONDS, NoTime};
+use halfrow::files::text::{self, quoted, told};
 use halfrow::model::Short;
-use halfrow::tables::text::{self, quoted, told};
 
 /// A settings file's values. Text is as on the command line and is not checked here. A relative path starts at the folder in
 /// which the program was started.

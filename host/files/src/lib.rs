@@ -1,4 +1,5 @@
-//! Files on disk, whatever is in them: outputs that are whole or as they were, and inputs whose bytes can be looked at again.
+//! Files on disk, whatever is in them: outputs that are whole or as they were, inputs whose bytes can be looked at again, and the
+//! text of small ones.
 
 #![warn(missing_debug_implementations)]
 
@@ -6,6 +7,7 @@
 compile_error!("halfrow-files is for Linux alone; docs/portable.md says what works elsewhere");
 
 mod regular;
+pub mod text;
 pub mod written_aside;
 
 pub use regular::{NotRegular, check_regular};

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use halfrow::tables::text;
+use halfrow::files::text;
 
 /// A file of TOML that cannot be used.
 #[derive(Debug, thiserror::Error)]

@@ -5,8 +5,8 @@ use std::io::{self, Write as _};
 use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
+use halfrow::files::text::{MAX_BYTES, read as read_text};
 use halfrow::files::written_aside::{Claim, folder_of, sync_folder};
-use halfrow::tables::text::{MAX_BYTES, read as read_text};
 use nix::unistd::{getegid, geteuid};
 use serde::Serialize;
 use serde::de::DeserializeOwned;

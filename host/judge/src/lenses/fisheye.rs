@@ -9,7 +9,7 @@ use saphyr::Yaml;
 
 use super::tree::{Keys, documents, number, numbers, without_header};
 use super::{LensContentError, LensFile, LensModel, picture_size};
-use crate::tables::text::quoted;
+use halfrow_files::text::quoted;
 
 /// The keys under which each part may stand. Case and punctuation do not count.
 const MATRIX: [&str; 3] = ["camera_matrix", "K", "intrinsic_matrix"];

@@ -16,7 +16,7 @@ use halfrow_model::CalibratedLens;
 pub use error::{LensContentError, LensFileError, WrongShape};
 
 use crate::call::Input;
-use crate::tables::text;
+use halfrow_files::text;
 
 /// The most columns and rows that pictures of a calibration may have.
 const MAX_SIDE: usize = 65_535;

@@ -6,7 +6,7 @@
 use halfrow_model::{CalibratedLens, Profile};
 
 use super::{LensContentError, LensFile, LensModel, MAX_COEFFICIENTS, picture_size};
-use crate::tables::text::quoted;
+use halfrow_files::text::quoted;
 
 /// The most pixels by which the inverse polynomial, which is a fit, may differ from the direct one.
 const MAX_DISTANCE: f64 = 2.0;

@@ -6,7 +6,7 @@ use saphyr::{LoadableYamlNode, Marker, ScanError, Yaml};
 use saphyr_parser::{Event, Parser};
 
 use super::LensContentError;
-use crate::tables::text::quoted;
+use halfrow_files::text::quoted;
 
 /// The keys of a file or of a part of it.
 pub(super) struct Keys<'a>(Vec<(&'a str, &'a Yaml<'a>)>);

@@ -11,8 +11,9 @@ use halfrow_protocol::message::Datapath;
 use serde_json::{Map, Value};
 
 use super::members::{Members, list, number};
-use super::{ContentError, Place, TableFileError, layout, mem, text};
+use super::{ContentError, Place, TableFileError, layout, mem};
 use crate::call::Input;
+use halfrow_files::text;
 use halfrow_files::written_aside::{WriteAsideError, write_aside};
 
 /// A table file: everything that a board is given before frames.

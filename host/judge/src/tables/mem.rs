@@ -10,9 +10,9 @@ use std::str::FromStr;
 use halfrow_model::{BitDepth, Geometry, GridShape, Kernel, TableSet, WEIGHT_NAMES};
 use halfrow_protocol::message::Datapath;
 
-use super::text::{self, quoted};
 use super::{DATAPATH, MemError, Place, TableFileError, TableFormat, WrongDatapath, datapath_of};
 use crate::call::Input;
+use halfrow_files::text::{self, quoted};
 use halfrow_files::written_aside::{Aside, Claim, WriteAsideError};
 
 /// Hexadecimal digits of a row factor, and of an entry of a grid.

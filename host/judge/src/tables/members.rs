@@ -8,8 +8,8 @@ use halfrow_protocol::message::Datapath;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::{Map, Value};
 
-use super::text::{quoted, without_mark};
 use super::{ContentError, Place, WrongDatapath};
+use halfrow_files::text::{quoted, without_mark};
 
 /// An object's members as they stand in the text, repeated keys included.
 pub(super) struct Members(Vec<(String, Value)>);

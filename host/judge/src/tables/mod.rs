@@ -23,7 +23,6 @@ mod layout;
 pub mod mem;
 mod members;
 mod place;
-pub mod text;
 
 pub use error::{ContentError, MemError, TableFileError, WrongDatapath};
 pub use format::{TableFormat, UnknownTableFormat};

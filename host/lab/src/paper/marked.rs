@@ -12,9 +12,9 @@ use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use halfrow::files::text;
 use halfrow::frames::preview::RgbImage;
 use halfrow::frames::{self, ReadError};
-use halfrow::tables::text;
 use halfrow_model::Equidistant;
 use serde::Deserialize;
 

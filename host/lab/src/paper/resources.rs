@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use halfrow::tables::text;
+use halfrow::files::text;
 use serde::Deserialize;
 
 use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};

@@ -8,9 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::LoadError;
 use crate::call_error::CallError;
-use halfrow::files::check_regular;
+use halfrow::files::{check_regular, text};
 use halfrow::result::sha256;
-use halfrow::tables::text;
 
 /// How a bitstream was made. Unknown keys are ignored.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -37,7 +37,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<String> {
 }
 
 /// `text` without the byte order mark that Windows editors put before it without showing it.
-pub(crate) fn without_mark(text: &str) -> &str {
+pub fn without_mark(text: &str) -> &str {
     text.trim_start_matches('\u{feff}')
 }
 
