@@ -32,9 +32,9 @@ mod threads;
 
 use tracing::error_span;
 
-use crate::link::{Candidate, Link, kinds};
-use crate::progress::{Progress, Step};
-use crate::result::{CheckName, FileHash, NotExercised, Problem};
+use crate::link::{Candidate, kinds};
+use crate::progress::Progress;
+use crate::result::{CheckName, FileHash, Problem};
 use crate::target::{BoardKind, Target};
 use crate::verdict::Cause;
 
@@ -44,7 +44,6 @@ use frames::observations::Observations;
 use plan::misfit::check_frames;
 use sessions::Sessions;
 pub(crate) use steps::NotAllJudged;
-use steps::Run;
 
 pub use crate::board::SessionIds;
 pub(crate) use at_speed::FEW_AT_SPEED;
@@ -124,45 +123,10 @@ fn run_to_report(
     let mut findings = Findings::new(target, kind);
     let mut sessions = Sessions::new(options, link.name(), reopen);
     let mut seen = Observations::default();
-    let ended = drive(plan, link, options, &mut sessions, progress, &mut findings, &mut seen);
+    let ended = steps::carry_out(plan, link, options, &mut sessions, progress, &mut findings, &mut seen);
     progress.done();
     match findings.misfit.take() {
         Some(misfit) => Err(misfit),
         None => Ok(conclude::conclude(plan, findings, seen, sessions.report(), ended, options, begun)),
     }
-}
-
-fn drive(
-    plan: &Plan,
-    link: Box<dyn Link>,
-    options: &RunOptions,
-    sessions: &mut Sessions,
-    progress: &dyn Progress,
-    findings: &mut Findings,
-    seen: &mut Observations,
-) -> Result<Vec<NotExercised>, End> {
-    progress.step(Step::JudgeTheJudge);
-    steps::judge_the_judge(findings)?;
-    progress.step(Step::OpenTheBoard);
-    let mut board = sessions.open(link)?;
-    tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
-    let run = Run {
-        plan,
-        generations: plan.generations(&Build::of(&board.capabilities)),
-        board: &mut board,
-        sessions,
-        options,
-        progress,
-        findings,
-        bursts: 0,
-        counters_doubted: false,
-    };
-    let end = run.all_steps(seen);
-    sessions.note_end(&board);
-    // Whatever happened, the next run must find the board free. A board that is gone need not be asked.
-    let reachable = !matches!(&end, Err(end) if end.is_unreachable());
-    if reachable {
-        board.close();
-    }
-    end
 }

@@ -1,4 +1,4 @@
-//! The order of a run's steps, and the first two.
+//! The order of a run's steps, with those too short for a module: the judge, identity, link.
 
 use std::sync::mpsc::Receiver;
 use std::thread;
@@ -14,6 +14,7 @@ use super::plan::variations::Build;
 use super::plan::{Generation, Plan, Segment};
 use super::sessions::Sessions;
 use crate::board::{Board, BoardError, UnknownDatapath, possible};
+use crate::link::Link;
 use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::result::{CheckName, Finding, NotExercised, Problem};
@@ -48,7 +49,44 @@ pub(super) struct Run<'a> {
     pub(super) counters_doubted: bool,
 }
 
-pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
+/// Carries out the steps of `plan` with the board behind `link`, up to the first that ends the run. Returns what a board that is
+/// right was not exercised in.
+pub(super) fn carry_out(
+    plan: &Plan,
+    link: Box<dyn Link>,
+    options: &RunOptions,
+    sessions: &mut Sessions,
+    progress: &dyn Progress,
+    findings: &mut Findings,
+    seen: &mut Observations,
+) -> Result<Vec<NotExercised>, End> {
+    progress.step(Step::JudgeTheJudge);
+    judge_the_judge(findings)?;
+    progress.step(Step::OpenTheBoard);
+    let mut board = sessions.open(link)?;
+    tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
+    let run = Run {
+        plan,
+        generations: plan.generations(&Build::of(&board.capabilities)),
+        board: &mut board,
+        sessions,
+        options,
+        progress,
+        findings,
+        bursts: 0,
+        counters_doubted: false,
+    };
+    let end = run.all_steps(seen);
+    sessions.note_end(&board);
+    // Whatever happened, the next run must find the board free. A board that is gone need not be asked.
+    let reachable = !matches!(&end, Err(end) if end.is_unreachable());
+    if reachable {
+        board.close();
+    }
+    end
+}
+
+fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
     match golden::judge_the_judge() {
         Ok(samples) => {
             let path = reference::path().to_string();
@@ -70,7 +108,7 @@ fn all_judged(schedule: &[Segment], judged: usize) -> Result<(), End> {
 
 impl Run<'_> {
     /// All steps that need an open board. Returns what a board that is right was not exercised in.
-    pub(super) fn all_steps(mut self, seen: &mut Observations) -> Result<Vec<NotExercised>, End> {
+    fn all_steps(mut self, seen: &mut Observations) -> Result<Vec<NotExercised>, End> {
         self.findings.note_identity(self.board);
         self.identity()?;
         let Some(limit) = self.plan.within else { return self.looking_again(seen) };
