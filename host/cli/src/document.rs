@@ -1,11 +1,12 @@
-//! Results of commands as JSON documents, and why there is no result.
+//! Results of commands as JSON documents.
 
 use serde::Serialize;
 
-use crate::commands::{Failure, codes, print};
+use crate::commands::print;
 use crate::exit::Exit;
-use crate::{console, flags, json};
-use halfrow::result::{BoardReport, Document, Problem, Schema};
+use crate::failure::Failure;
+use crate::{console, json};
+use halfrow::result::{BoardReport, Document, Schema};
 
 /// The result of a command that judges nothing.
 pub(crate) fn result_text(
@@ -38,27 +39,4 @@ pub(crate) fn tell_result(
 ) -> Result<(), Failure> {
     console::tell(&result_text(command, exit_code, board, rest)?);
     Ok(())
-}
-
-/// The document of a command that failed.
-#[must_use]
-pub fn failure(command: &str, failure: &Failure) -> String {
-    let Failure { exit, error, .. } = failure;
-    json::without_result(command, *exit, exit.verdict(), &named(codes::problem(*exit, error)))
-}
-
-/// The code of a command's failure, if `explain` has more to say about it.
-#[must_use]
-pub fn code(failure: &Failure) -> Option<String> {
-    halfrow_program::codes::explained(codes::problem(failure.exit, &failure.error))
-}
-
-/// `problem`, with the flag added after each setting that its words name.
-fn named(problem: Problem) -> Problem {
-    Problem {
-        message: flags::named(&problem.message),
-        remedy: problem.remedy.as_deref().map(flags::named),
-        causes: problem.causes.into_iter().map(named).collect(),
-        ..problem
-    }
 }

@@ -9,6 +9,7 @@ mod bitstreams;
 mod call_error;
 pub mod commands;
 mod document;
+pub mod failure;
 mod files;
 pub mod flags;
 pub mod pool;

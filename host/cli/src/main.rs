@@ -2,8 +2,9 @@
 
 use std::process::ExitCode;
 
-use halfrow_cli::commands::{self, Cli, Failure};
+use halfrow_cli::commands::Cli;
 use halfrow_cli::exit::Exit;
+use halfrow_cli::failure::Failure;
 use halfrow_cli::{console, flags, guard, signals};
 use halfrow_program::built::Built;
 use halfrow_program::{line, log};
@@ -38,9 +39,9 @@ fn program() -> Exit {
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
     let Failure { exit, error, .. } = failure;
     console::error(&flags::named(&format!("{error:#}")));
-    console::refer(commands::code(failure).as_deref());
+    console::refer(failure.code().as_deref());
     if let Some(command) = as_json_of {
-        console::tell(&commands::failure(command, failure));
+        console::tell(&failure.document(command));
     }
     *exit
 }

@@ -11,8 +11,8 @@ use halfrow_program::number::{any, number};
 
 use super::judging::time_limit;
 use crate::call_error::CallError;
-use crate::commands::Failure;
 use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::pool::{self, POOL};
 use crate::settings::Settings;
 use crate::signals;

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use super::given::{Decider, Given, yes_or_no};
 use crate::call_error::CallError;
-use crate::commands::Failure;
 use crate::console;
+use crate::failure::Failure;
 use crate::settings::Settings;
 use clap::Args;
 use halfrow_model::{Geometry, Phase};

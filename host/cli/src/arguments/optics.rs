@@ -9,7 +9,7 @@ use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, Kernel, LensErro
 use halfrow_program::number::any;
 
 use crate::call_error::CallError;
-use crate::commands::Failure;
+use crate::failure::Failure;
 use halfrow::kernels;
 use halfrow::lenses::LensFile;
 
@@ -279,15 +279,4 @@ pub(crate) fn choose(
         OpticsError::Kernel { .. } | OpticsError::File(_) => Failure::from(error).in_value_of("--kernel"),
         error => error.into(),
     })
-}
-
-/// A file of another datapath is refused like a board of another datapath.
-impl From<OpticsError> for Failure {
-    fn from(error: OpticsError) -> Self {
-        match error {
-            OpticsError::Damaged(_) => Self::error(error),
-            error if error.is_other_datapath() => Self::refused(error),
-            error => Self::call(error),
-        }
-    }
 }

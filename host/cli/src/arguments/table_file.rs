@@ -7,7 +7,7 @@ use clap::Args;
 use super::given::{Decider, Given, IN_TABLE_FILES, written};
 use super::optics::LensArguments;
 use crate::call_error::CallError;
-use crate::commands::Failure;
+use crate::failure::Failure;
 use crate::settings::Settings;
 use halfrow::call::Input;
 use halfrow::optics::OpticsError;

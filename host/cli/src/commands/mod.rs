@@ -31,17 +31,13 @@ use crate::arguments::given;
 use crate::call_error::CallError;
 use crate::console;
 use crate::exit::Exit;
+use crate::failure::Failure;
 use crate::progress::{self, ChildOutput};
 use crate::settings::Settings;
-use halfrow::board::{BoardError, OpenFailed};
-use halfrow::link::OpenError;
 use halfrow::progress::Progress;
 use halfrow::reference;
-use halfrow::run::{Misfit, WithinError};
 
 use line::{Command, Line};
-
-pub use crate::document::{code, failure};
 
 /// What every command gets beside its own arguments.
 pub struct Context {
@@ -74,74 +70,6 @@ impl Context {
 /// A call of the program.
 #[derive(Debug)]
 pub struct Cli(Line<Command>);
-
-/// Why a command has no result.
-#[derive(Debug)]
-pub struct Failure {
-    /// The exit code.
-    pub exit: Exit,
-    /// Why, with its causes.
-    pub error: anyhow::Error,
-    /// The option whose value is wrong, as written on the command line, if that is known.
-    option: Option<&'static str>,
-}
-
-impl Failure {
-    /// A failure of the call or of its input.
-    pub(crate) fn call(error: impl Into<anyhow::Error>) -> Self {
-        Self::of(Exit::Usage, error)
-    }
-
-    /// A failure for which the call is not to blame.
-    pub fn error(error: impl Into<anyhow::Error>) -> Self {
-        Self::of(Exit::Error, error)
-    }
-
-    /// An input that is refused, like a board of another datapath.
-    pub(crate) fn refused(error: impl Into<anyhow::Error>) -> Self {
-        Self::of(Exit::Refused, error)
-    }
-
-    /// A failure with this exit code.
-    pub(crate) fn of(exit: Exit, error: impl Into<anyhow::Error>) -> Self {
-        Self { exit, error: error.into(), option: None }
-    }
-
-    /// This failure, attributed to the value of `option`, wherever that comes from.
-    pub(crate) fn in_value_of(self, option: &'static str) -> Self {
-        Self { option: Some(option), ..self }
-    }
-}
-
-impl From<OpenError> for Failure {
-    fn from(error: OpenError) -> Self {
-        Self::of(error.class().into(), error)
-    }
-}
-
-impl From<BoardError> for Failure {
-    fn from(error: BoardError) -> Self {
-        Self::of(error.cause().into(), error)
-    }
-}
-
-impl From<OpenFailed> for Failure {
-    fn from(failed: OpenFailed) -> Self {
-        failed.error.into()
-    }
-}
-
-impl From<Misfit> for Failure {
-    fn from(error: Misfit) -> Self {
-        let option = match &error {
-            Misfit::Taps => Some("--kernel"),
-            Misfit::Within(WithinError::AtSpeed { .. }) => Some("--at-speed"),
-            _ => None,
-        };
-        let failure = if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) };
-        Self { option, ..failure }
-    }
-}
 
 impl Cli {
     /// The call on this program's command line.

@@ -109,17 +109,6 @@ fn make(
     made
 }
 
-impl From<PaperError> for Failure {
-    fn from(error: PaperError) -> Self {
-        match &error {
-            PaperError::Board(of_board) => Self::of(of_board.cause().into(), error),
-            PaperError::Misfit(misfit) if misfit.is_other_datapath() => Self::refused(error),
-            PaperError::Misfit(_) | PaperError::Synthesis { .. } => Self::call(error),
-            _ => Self::error(error),
-        }
-    }
-}
-
 /// Prints every claim on a line.
 fn conclude(exhibits: &[Exhibit]) {
     for exhibit in exhibits {

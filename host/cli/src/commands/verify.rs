@@ -21,7 +21,7 @@ use halfrow::files::check_regular;
 use halfrow::frames::Builtin;
 use halfrow::link::Recording;
 use halfrow::optics::Chosen;
-use halfrow::run::{FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
+use halfrow::run::{FrameSource, Plan, RecordedRun, RunOptions, Vary};
 
 #[derive(Debug, Args)]
 #[command(mut_args(|argument| board::helped(argument, Replays::Yes, MOCK)))]
@@ -88,12 +88,6 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 
 fn wrong_frame(error: impl Into<anyhow::Error>) -> Failure {
     Failure::call(error).in_value_of("--frame")
-}
-
-impl From<RestoreError> for Failure {
-    fn from(error: RestoreError) -> Self {
-        if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
-    }
 }
 
 impl Arguments {

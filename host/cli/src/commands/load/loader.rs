@@ -15,7 +15,7 @@ use nix::unistd::Pid;
 use signal_hook::consts::SIGCHLD;
 
 use super::LoadError;
-use crate::commands::Failure;
+use crate::failure::Failure;
 use crate::progress::ChildOutput;
 use halfrow::board::BoardError;
 use halfrow::report::shell_word;

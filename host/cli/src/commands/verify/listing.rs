@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use crate::commands::{Failure, print};
+use crate::commands::print;
 use crate::document::print_result;
 use crate::exit::Exit;
+use crate::failure::Failure;
 use halfrow::board::{BoardNature, Capabilities};
 use halfrow::result::Variation;
 use halfrow::run::{self, Build, Part, Plan, Prices, Rates, Selection, Timing, usual_capabilities};

@@ -1,0 +1,130 @@
+//! Why a command has no result, and who is to blame for it: the exit code that each error leads to.
+
+use crate::commands::codes;
+use crate::exit::Exit;
+use crate::{flags, json};
+use halfrow::board::{BoardError, OpenFailed};
+use halfrow::link::OpenError;
+use halfrow::optics::OpticsError;
+use halfrow::result::Problem;
+use halfrow::run::{Misfit, RestoreError, WithinError};
+use halfrow_lab::paper::PaperError;
+
+/// Why a command has no result.
+#[derive(Debug)]
+pub struct Failure {
+    /// The exit code.
+    pub exit: Exit,
+    /// Why, with its causes.
+    pub error: anyhow::Error,
+    /// The option whose value is wrong, as written on the command line, if that is known.
+    pub(crate) option: Option<&'static str>,
+}
+
+impl Failure {
+    /// A failure of the call or of its input.
+    pub(crate) fn call(error: impl Into<anyhow::Error>) -> Self {
+        Self::of(Exit::Usage, error)
+    }
+
+    /// A failure for which the call is not to blame.
+    pub fn error(error: impl Into<anyhow::Error>) -> Self {
+        Self::of(Exit::Error, error)
+    }
+
+    /// An input that is refused, like a board of another datapath.
+    pub(crate) fn refused(error: impl Into<anyhow::Error>) -> Self {
+        Self::of(Exit::Refused, error)
+    }
+
+    /// A failure with this exit code.
+    pub(crate) fn of(exit: Exit, error: impl Into<anyhow::Error>) -> Self {
+        Self { exit, error: error.into(), option: None }
+    }
+
+    /// This failure, attributed to the value of `option`, wherever that comes from.
+    pub(crate) fn in_value_of(self, option: &'static str) -> Self {
+        Self { option: Some(option), ..self }
+    }
+
+    /// Its code, if `explain` has more to say about it.
+    #[must_use]
+    pub fn code(&self) -> Option<String> {
+        halfrow_program::codes::explained(codes::problem(self.exit, &self.error))
+    }
+
+    /// The document of `command`, which failed with this.
+    #[must_use]
+    pub fn document(&self, command: &str) -> String {
+        let Self { exit, error, .. } = self;
+        json::without_result(command, *exit, exit.verdict(), &named(codes::problem(*exit, error)))
+    }
+}
+
+/// `problem`, with the flag added after each setting that its words name.
+fn named(problem: Problem) -> Problem {
+    Problem {
+        message: flags::named(&problem.message),
+        remedy: problem.remedy.as_deref().map(flags::named),
+        causes: problem.causes.into_iter().map(named).collect(),
+        ..problem
+    }
+}
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        Self::of(error.class().into(), error)
+    }
+}
+
+impl From<BoardError> for Failure {
+    fn from(error: BoardError) -> Self {
+        Self::of(error.cause().into(), error)
+    }
+}
+
+impl From<OpenFailed> for Failure {
+    fn from(failed: OpenFailed) -> Self {
+        failed.error.into()
+    }
+}
+
+impl From<Misfit> for Failure {
+    fn from(error: Misfit) -> Self {
+        let option = match &error {
+            Misfit::Taps => Some("--kernel"),
+            Misfit::Within(WithinError::AtSpeed { .. }) => Some("--at-speed"),
+            _ => None,
+        };
+        let failure = if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) };
+        Self { option, ..failure }
+    }
+}
+
+/// A file of another datapath is refused like a board of another datapath.
+impl From<OpticsError> for Failure {
+    fn from(error: OpticsError) -> Self {
+        match error {
+            OpticsError::Damaged(_) => Self::error(error),
+            error if error.is_other_datapath() => Self::refused(error),
+            error => Self::call(error),
+        }
+    }
+}
+
+impl From<RestoreError> for Failure {
+    fn from(error: RestoreError) -> Self {
+        if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
+    }
+}
+
+impl From<PaperError> for Failure {
+    fn from(error: PaperError) -> Self {
+        match &error {
+            PaperError::Board(of_board) => Self::of(of_board.cause().into(), error),
+            PaperError::Misfit(misfit) if misfit.is_other_datapath() => Self::refused(error),
+            PaperError::Misfit(_) | PaperError::Synthesis { .. } => Self::call(error),
+            _ => Self::error(error),
+        }
+    }
+}
