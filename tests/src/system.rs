@@ -119,7 +119,7 @@ pub fn streamed(plan: Plan) -> Plan {
     let all = plan.clone().varying(Vary { centre: true, depth: true }).parts(&Build::full(2048));
     let streamed =
         all.into_iter().filter(|part| !matches!(part, Part::AtSpeed | Part::Corners | Part::Rules));
-    Plan { at_speed: AtSpeed::Off, parts: Some(Selection::all(streamed)), ..plan }
+    Plan { at_speed: AtSpeed::Off, selection: Some(Selection::all(streamed)), ..plan }
 }
 
 /// The report on a board by this plan.

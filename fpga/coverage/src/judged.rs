@@ -44,7 +44,7 @@ pub(crate) struct FaultVerdict {
 pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<FaultVerdict> {
     let whole = report(plan, board, fault)?;
     let mut by = |selection: Selection, is_asked: bool| {
-        let plan = Plan { parts: Some(selection), ..plan.clone() };
+        let plan = Plan { selection: Some(selection), ..plan.clone() };
         is_asked.then(|| report(&plan, board, fault)).transpose()
     };
     let least = by(Selection::least(), whole.verdict() != Verdict::Pass)?.is_some_and(|part| is_found(&part));

@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let left = seconds * (1.0 - KEPT) - prices.opening();
             let choice = choose(&prices, &chosen_by, &Selection::least(), left);
             let target = format!("mock,speed={bytes_per_second},delay={},{pace}", ROUND_TRIP / 2.0);
-            let run = Plan { parts: Some(choice.selection.clone()), ..plan.clone() };
+            let run = Plan { selection: Some(choice.selection.clone()), ..plan.clone() };
             let begun = Instant::now();
             let judged = verify(&run, link::open(&target.parse()?)?, &RunOptions::default(), &Silent)?;
             let (taken, wall) = (judged.report.link.seconds, begun.elapsed());

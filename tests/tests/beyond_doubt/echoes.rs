@@ -53,7 +53,7 @@ impl Link for Echoes {
 
 /// The report on a sound board, with the wire's rules, whose line echoes once it was sent `after` bytes.
 fn echoing(after: usize, beside: bool) -> Report {
-    let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
+    let plan = Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
     let candidate = open("mock");
     let link = Box::new(Echoes { link: candidate.link, left: after, beside });
     judge_by_plan(&plan, Candidate { link, ..candidate })

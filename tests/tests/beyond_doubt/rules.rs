@@ -14,7 +14,7 @@ const FRAME: u16 = 0x1234;
 
 /// The smallest run with the rules.
 pub(super) fn plan() -> Plan {
-    Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() }
+    Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() }
 }
 
 fn check(report: &Report) -> &Check {
@@ -82,7 +82,7 @@ fn builds_of_every_kind_keep_the_rules() {
         assert!(requests > 300, "{options}: {requests}");
     }
     for (height, options) in [(1, small), (2, "max-height=2"), (3, "max-height=3")] {
-        let low = Plan { parts: plan().parts, ..System { height, ..System::TINY }.plan() };
+        let low = Plan { selection: plan().selection, ..System { height, ..System::TINY }.plan() };
         let report = judge_by_plan(&low, open(&format!("mock,{options}")));
         assert_eq!(report.verdict(), Verdict::Pass, "{options}: {}", report.headline());
     }
@@ -369,7 +369,7 @@ fn a_commit_that_is_not_checked_passes_but_for_the_rules() {
     let fault = "mock,fault=unchecked-commit";
     let report = judge_by_plan(&plan(), open(fault));
     assert_eq!(broken(&report).0, Rule::CommitCrc, "{}", report.headline());
-    let without = Plan { parts: Some(Selection::least().with(Part::Corners, 1)), ..System::TINY.plan() };
+    let without = Plan { selection: Some(Selection::least().with(Part::Corners, 1)), ..System::TINY.plan() };
     let report = judge_by_plan(&without, open(fault));
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert_eq!(check(&report).finding, Finding::RulesLeftOut {});

@@ -105,18 +105,18 @@ fn passes(plan: &Plan) {
 
 #[test]
 fn its_frames_at_speed_are_waited_for() {
-    passes(&Plan { parts: Some(Selection::least().with(Part::AtSpeed, 3)), ..System::TINY.plan() });
+    passes(&Plan { selection: Some(Selection::least().with(Part::AtSpeed, 3)), ..System::TINY.plan() });
 }
 
 #[test]
 fn its_bursts_are_waited_for_where_rules_are_tried() {
-    passes(&Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() });
+    passes(&Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() });
 }
 
 /// A simulated board may take far longer for a frame than the clock that it names.
 #[test]
 fn a_burst_is_waited_for_as_long_as_its_frames_come() {
-    let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
+    let plan = Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
     let report = judge_by_plan(&plan, board_of(0, |_| 12_000));
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
@@ -158,7 +158,7 @@ fn beginning_late(late: u64) -> Report {
     };
     let candidate = Altered::new(&options, alter).candidate();
     let link = Box::new(Trickles { link: candidate.link, clock });
-    let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
+    let plan = Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
     judge_by_plan(&plan, Candidate { link, ..candidate })
 }
 
@@ -179,8 +179,8 @@ const PLL: u8 = 2;
 
 /// The report on a board of which only frames at speed are judged.
 fn judged(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Report {
-    let parts = Some(Selection::least().with(Part::AtSpeed, 3));
-    judge_by_plan(&Plan { parts, ..System::TINY.plan() }, board_of(source, takes))
+    let selection = Some(Selection::least().with(Part::AtSpeed, 3));
+    judge_by_plan(&Plan { selection, ..System::TINY.plan() }, board_of(source, takes))
 }
 
 /// 3 frames of 520 clocks at 10 kHz are 156 ms.

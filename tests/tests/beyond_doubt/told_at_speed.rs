@@ -190,8 +190,9 @@ fn a_row_of_another_content_that_is_corrected_rightly_is_no_matter_of_timing() {
 fn unused_lines(pauses: bool) -> (Report, bool) {
     let change = if pauses { |record: &mut FrameRecord| record.pauses = 7 } else { |_: &mut FrameRecord| {} };
     let mut alter = with_record(1, change);
-    let parts = Selection::least().with(Part::AtSpeed, 3);
-    let plan = Plan { parts: Some(parts), fail_fast: false, ..System { height: 16, ..System::TINY }.plan() };
+    let selection = Selection::least().with(Part::AtSpeed, 3);
+    let plan =
+        Plan { selection: Some(selection), fail_fast: false, ..System { height: 16, ..System::TINY }.plan() };
     let board = Altered::new(&Options::default(), move |toward, packet| vec![alter(toward, packet)]);
     let report = judge_by_plan(&plan, board.candidate());
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
@@ -243,9 +244,9 @@ fn a_host_that_has_many_records_to_judge_does_not_fall_silent() {
         vec![packet]
     });
     // At 96 MHz they are 369 frames of 520 clocks, and a reply has room for 226 records.
-    let parts = Some(Selection::least().with(Part::AtSpeed, 1000));
+    let selection = Some(Selection::least().with(Part::AtSpeed, 1000));
     let at_speed = AtSpeed::For(Duration::from_millis(2));
-    let report = judge_by_plan(&Plan { at_speed, parts, ..System::TINY.plan() }, board.candidate());
+    let report = judge_by_plan(&Plan { at_speed, selection, ..System::TINY.plan() }, board.candidate());
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let asked = asked.lock().unwrap();
     let most = asked.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max();

@@ -18,13 +18,13 @@ use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
 
 const ROWS: usize = 16;
 
-fn plan(parts: Option<Selection>) -> Plan {
+fn plan(selection: Option<Selection>) -> Plan {
     let system = System { height: ROWS, ..System::TINY };
-    Plan { parts, fail_fast: false, ..system.plan() }
+    Plan { selection, fail_fast: false, ..system.plan() }
 }
 
-fn judged(board: &str, parts: Selection) -> Report {
-    judge_by_plan(&plan(Some(parts)), open(board))
+fn judged(board: &str, selection: Selection) -> Report {
+    judge_by_plan(&plan(Some(selection)), open(board))
 }
 
 /// The packets that the host sends in a run by `plan`.
@@ -47,9 +47,9 @@ fn all_parts_are_the_run_as_it_is_without_a_selection_to_the_byte() {
     let _alone = crate::RUNS.lock();
     let vary = halfrow::run::Vary { centre: true, depth: true };
     let whole = plan(None).varying(vary);
-    let parts = Selection::all(whole.parts(&Build::full(64)));
-    assert_eq!(parts.amount(Part::Centre), usize::MAX);
-    let (expected, found) = (sent(&whole), sent(&Plan { parts: Some(parts), ..whole }));
+    let selection = Selection::all(whole.parts(&Build::full(64)));
+    assert_eq!(selection.amount(Part::Centre), usize::MAX);
+    let (expected, found) = (sent(&whole), sent(&Plan { selection: Some(selection), ..whole }));
     assert!(expected.iter().filter(|packet| packet.is(Kind::RowIn)).count() > 200);
     assert!(expected == found);
 }
@@ -134,9 +134,9 @@ fn a_row_that_is_wrong_is_found_with_it_and_not_without() {
 #[test]
 fn frames_at_another_centre_and_depth_can_be_cut_too() {
     let _alone = crate::RUNS.lock();
-    let parts = Selection::least().with(Part::Centre, 10).with(Part::Depth(8), 3).with(Part::Swap, 4);
+    let selection = Selection::least().with(Part::Centre, 10).with(Part::Depth(8), 3).with(Part::Swap, 4);
     let vary = halfrow::run::Vary { centre: true, depth: true };
-    let judged = |board| judge_by_plan(&plan(Some(parts.clone())).varying(vary), open(board));
+    let judged = |board| judge_by_plan(&plan(Some(selection.clone())).varying(vary), open(board));
     let report = judged("mock");
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let rows: Vec<_> = report.frames.iter().map(|frame| (frame.rows, frame.generation)).collect();
@@ -179,7 +179,7 @@ fn a_frame_of_a_file_is_cut_like_any() {
     let scene = whole.scene(7);
     let frame = Arc::new(Builtin::Noise.render(&scene).unwrap());
     let file = FrameSource::File { path: "own.pgm".into(), frame };
-    let plan = Plan { at_speed: AtSpeed::Off, parts: Some(Selection::least()), ..whole.frames([file]) };
+    let plan = Plan { at_speed: AtSpeed::Off, selection: Some(Selection::least()), ..whole.frames([file]) };
     let report = judge_by_plan(&plan, open("mock"));
     assert_eq!((report.verdict(), report.frames[0].first_rows), (Verdict::Pass, Some(1)));
 }

@@ -215,7 +215,7 @@ impl Faults {
     /// What a whole run by `plan` finds on a board of this build; none if that was not measured.
     #[must_use]
     pub fn whole(&self, plan: &Plan, build: &str) -> Option<CoverageReport> {
-        let is_whole = plan.parts.is_none() && plan.within.is_none() && plan.at_speed == AtSpeed::Usual;
+        let is_whole = plan.selection.is_none() && plan.within.is_none() && plan.at_speed == AtSpeed::Usual;
         (is_whole && self.are_of(plan, build)).then(|| CoverageReport {
             found: self.found_by_whole(),
             faults: self.count(),
@@ -353,7 +353,7 @@ mod tests {
             Plan { seed: 2, ..plan.clone() },
             Plan { at_speed: AtSpeed::Off, ..plan.clone() },
             Plan { within: Some(Duration::from_secs(1)), ..plan.clone() },
-            Plan { parts: Some(Selection::least()), ..plan.clone() },
+            Plan { selection: Some(Selection::least()), ..plan.clone() },
             Plan { kernel: Interpolant::Linear.into(), ..plan.clone() },
             Plan { vary: Vary::default(), ..plan.clone() },
             Plan { phase: Phase::Rggb, ..plan.clone() },

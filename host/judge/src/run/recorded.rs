@@ -120,7 +120,7 @@ impl RecordedRun {
             frames: plan.frames.iter().map(FrameSource::name).collect(),
             repeat: plan.repeat,
             vary: plan.vary,
-            parts: plan.parts.clone(),
+            parts: plan.selection.clone(),
             at_speed: match plan.at_speed {
                 AtSpeed::Usual | AtSpeed::Soak(_) => None,
                 AtSpeed::Off => none_at_speed(),
@@ -153,7 +153,7 @@ impl RecordedRun {
             phase,
             repeat: run.repeat,
             vary: run.vary,
-            parts: run.parts.clone(),
+            selection: run.parts.clone(),
             at_speed: run.at_speed.into(),
             fail_fast: run.fail_fast,
             seed: run.seed,

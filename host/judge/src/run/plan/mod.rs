@@ -154,9 +154,9 @@ pub struct Plan {
     /// Which settings of `tables` are varied, in additional frames of noise.
     pub vary: Vary,
     /// The parts that are judged; all of them when not given.
-    pub parts: Option<Selection>,
+    pub selection: Option<Selection>,
     /// How long the run may take on the link's clock; it takes the parts that find the most faults a second. None for the
-    /// whole run, or the `parts`. The choice depends on the link, so a recording of such a run cannot be judged again.
+    /// whole run, or the `selection`. The choice depends on the link, so a recording of such a run cannot be judged again.
     pub within: Option<Duration>,
     /// The frames that the board makes itself, at its full pixel clock.
     pub at_speed: AtSpeed,
@@ -227,7 +227,7 @@ impl Plan {
             frames: Builtin::ALL.into_iter().map(FrameSource::Builtin).collect(),
             repeat: 1,
             vary: Vary::default(),
-            parts: None,
+            selection: None,
             within: None,
             at_speed: AtSpeed::Usual,
             fail_fast: false,

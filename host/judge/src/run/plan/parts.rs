@@ -129,7 +129,7 @@ impl Selection {
     }
 
     /// What this selection streams of a whole schedule.
-    pub(crate) fn of(&self, schedule: Vec<Segment>) -> Vec<Segment> {
+    pub(crate) fn cut(&self, schedule: Vec<Segment>) -> Vec<Segment> {
         let (mut active, mut streamed) = (None, Vec::new());
         for Segment { geometry, timing, frames, .. } in schedule {
             let rows = |frame: &ScheduledFrame| self.amount(frame.part).min(geometry.height());
@@ -210,6 +210,6 @@ impl Plan {
 
     /// How much of `part` is to be judged; all of it when the plan has no selection.
     pub(crate) fn amount(&self, part: Part) -> usize {
-        self.parts.as_ref().map_or(usize::MAX, |selection| selection.amount(part))
+        self.selection.as_ref().map_or(usize::MAX, |selection| selection.amount(part))
     }
 }

@@ -174,7 +174,7 @@ impl<'a> Prices<'a> {
     }
 
     fn streamed(&self, selection: &Selection) -> f64 {
-        let segments = self.plan.streamable(selection).of(self.whole.clone());
+        let segments = self.plan.streamable(selection).cut(self.whole.clone());
         segments.iter().map(|segment| self.segment(segment)).sum::<f64>() + self.read_back()
     }
 

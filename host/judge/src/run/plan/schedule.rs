@@ -23,9 +23,9 @@ impl Plan {
     #[must_use]
     pub fn schedule(&self, build: &Build) -> Vec<Segment> {
         let whole = self.whole_schedule(build);
-        match &self.parts {
+        match &self.selection {
             None => whole,
-            Some(selection) => self.streamable(selection).of(whole),
+            Some(selection) => self.streamable(selection).cut(whole),
         }
     }
 

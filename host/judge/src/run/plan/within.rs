@@ -79,7 +79,7 @@ impl Run<'_> {
         match chosen {
             Ok((selection, report)) => {
                 self.findings.within = Some(report);
-                Ok(Plan { parts: Some(selection), ..self.plan.clone() })
+                Ok(Plan { selection: Some(selection), ..self.plan.clone() })
             }
             Err(error) => Err(self.findings.refuse(error.into())),
         }
