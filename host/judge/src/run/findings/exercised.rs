@@ -9,7 +9,7 @@ use crate::board::{BoardNature, grids};
 use crate::result::{CheckName, Identity, NotExercised};
 use crate::run::Findings;
 use crate::run::at_speed::known_bursts;
-use crate::run::findings::levels::{Levels, Shown};
+use crate::run::findings::levels::{Levels, ShownBits};
 use crate::run::frames::observations::Observations;
 use crate::run::plan::Generation;
 use crate::run::rules::MOST_FILLED;
@@ -66,7 +66,7 @@ fn used_of(generation: &Generation, seen: &Observations, whole: &[u8]) -> Option
 }
 
 /// What frames that were corrected with `generations` did not exercise of `board`.
-fn not_exercised(board: &Identity, generations: &[&Generation], shown: Shown) -> Vec<NotExercised> {
+fn not_exercised(board: &Identity, generations: &[&Generation], shown: ShownBits) -> Vec<NotExercised> {
     if generations.is_empty() {
         return Vec::new();
     }
@@ -236,7 +236,7 @@ mod tests {
     }
 
     fn found(taps: u8, generations: &[&Generation]) -> Vec<NotExercised> {
-        let mut shown = Shown::default();
+        let mut shown = ShownBits::default();
         // Both levels of every bit of samples, and each bit of every centre.
         let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, [0, 4095].repeat(32)).unwrap();
         let centres = generations.iter().map(|generation| generation.tables.geometry().centre2());
@@ -306,7 +306,7 @@ mod tests {
         let grids = GridsReport { entries: 4096, grid_blanking: 32, width: 192 };
         let roomy = Identity { grids: Some(grids), ..board(7) };
         let unmoved = generation(127, Interpolant::Hermite, |_| 1 << 24);
-        let parts = not_exercised(&roomy, &[&unmoved], Shown::default());
+        let parts = not_exercised(&roomy, &[&unmoved], ShownBits::default());
         assert!(parts.contains(&NotExercised::RowTableAddress { lines: (0..12).collect() }), "{parts:?}");
     }
 
@@ -339,7 +339,7 @@ mod tests {
     fn bits_of_samples_count_on_either_side_of_the_board() {
         let frame =
             |samples: [u16; 2]| Frame::new(64, BitDepth::Twelve, Phase::Grbg, samples.repeat(32)).unwrap();
-        let mut shown = Shown::default();
+        let mut shown = ShownBits::default();
         shown.note(&frame([0x0f5, 0x005]), &frame([0, 0xfff]), Levels::default());
         let generation = generation(127, Interpolant::Linear, |_| 1 << 23);
         let found = not_exercised(&board(7), &[&generation], shown);

@@ -62,14 +62,14 @@ impl Levels {
 
 /// What frames have shown of a board: the levels of the bits of samples, and of the optical centre.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Shown {
+pub(crate) struct ShownBits {
     pub(crate) input: Levels,
     pub(crate) output: Levels,
     /// Those that would have changed a frame, had they been stuck.
     pub(crate) centre: Levels,
 }
 
-impl Shown {
+impl ShownBits {
     /// Adds a frame that went in, the frame that should have come out, and what that shows of the centre.
     pub(crate) fn note(&mut self, input: &Frame, output: &Frame, centre: Levels) {
         self.input.note(input);

@@ -5,14 +5,14 @@ use super::kept::KeptFrames;
 use crate::board::ReturnedRow;
 use crate::result::{Finding, FrameReport, FrameTotals, LateRows, LatencyReport};
 use crate::run::findings::End;
-use crate::run::findings::levels::Shown;
+use crate::run::findings::levels::ShownBits;
 
 /// What the judge has seen of all frames so far.
 #[derive(Default)]
 pub(crate) struct Observations {
     pub(crate) frames: Vec<FrameReport>,
     pub(crate) evidence: KeptFrames,
-    pub(crate) shown: Shown,
+    pub(crate) shown: ShownBits,
     pub(crate) latency: Option<LatencyReport>,
     /// The first row that names the wrong generation.
     pub(crate) wrong_generation: Option<Finding>,
