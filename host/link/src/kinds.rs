@@ -131,6 +131,12 @@ pub fn of(target: &Target) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == target.kind)
 }
 
+/// What is at the other end of `target`, as far as its kind tells; hardware for a kind that is not known here.
+#[must_use]
+pub fn board_of(target: &Target) -> BoardKind {
+    of(target).map_or(BoardKind::Hardware, |kind| kind.board)
+}
+
 /// Every way to write a target of any kind.
 #[must_use]
 pub fn forms() -> Vec<&'static str> {

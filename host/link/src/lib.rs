@@ -52,9 +52,9 @@ pub use wire::WireLink;
 #[cfg(feature = "sim")]
 pub use halfrow_sim::TraceError;
 
-/// What a line of this rate carries: a byte is a start bit, eight data bits and a stop bit.
-pub(crate) fn bytes_per_second(baud: u32) -> f64 {
-    f64::from(baud) / 10.0
+/// The bytes a second that a line of this rate carries: a byte is a start bit, eight data bits and a stop bit.
+pub fn bytes_per_second(baud: impl Into<f64>) -> f64 {
+    baud.into() / 10.0
 }
 
 /// The longest wait of a link that takes real time, so that a request to stop is noticed. The waits of a run for frames made by the

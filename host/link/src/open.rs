@@ -159,8 +159,7 @@ pub const WRITTEN_FILE: &str = "trace=FILE";
 /// link and never over a file.
 #[must_use]
 pub fn written_file(target: &Target) -> Option<&Path> {
-    let option = kinds::of(target)?.writes?;
-    target.options.iter().find(|(key, _)| key == option).map(|(_, file)| Path::new(file))
+    target.option(kinds::of(target)?.writes?).map(Path::new)
 }
 
 /// The board that answered in `recording`, which `target` names.

@@ -78,6 +78,12 @@ impl Target {
     pub fn mock() -> Self {
         Self { kind: "mock".to_owned(), address: None, options: Vec::new() }
     }
+
+    /// The value of the first option that is called `key`.
+    #[must_use]
+    pub fn option(&self, key: &str) -> Option<&str> {
+        self.options.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
+    }
 }
 
 impl FromStr for Target {

@@ -67,10 +67,8 @@ pub(crate) fn helped(argument: Arg, replays: Replays, without: &str) -> Arg {
 
 /// Refuses a recording where a board must answer new requests.
 pub(crate) fn refuse_recording(target: &Target) -> Result<(), Failure> {
-    match kinds::of(target) {
-        Some(kind) if kind.board == BoardKind::Replay => {
-            Err(wrong(Failure::call(CallError::RecordingCorrects)))
-        }
+    match kinds::board_of(target) {
+        BoardKind::Replay => Err(wrong(Failure::call(CallError::RecordingCorrects))),
         _ => Ok(()),
     }
 }

@@ -104,7 +104,7 @@ fn check(target: &Target) -> Result<(), Failure> {
     }
     refuse_recording(target)?;
     link::check(target).map_err(wrong)?;
-    if kinds::of(target).is_some_and(|kind| kind.board != BoardKind::Hardware) {
+    if kinds::board_of(target) != BoardKind::Hardware {
         return Err(wrong(Failure::call(LoadError::BuiltIn { target: target.to_string() })));
     }
     Ok(())

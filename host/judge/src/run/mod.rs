@@ -35,7 +35,7 @@ use tracing::error_span;
 use crate::link::{Candidate, kinds};
 use crate::progress::Progress;
 use crate::result::{CheckName, FileHash, Problem};
-use crate::target::{BoardKind, Target};
+use crate::target::Target;
 use crate::verdict::Cause;
 
 use findings::conclude::{self, Begun};
@@ -103,8 +103,7 @@ pub fn not_begun(
     options: &RunOptions,
 ) -> Finished {
     let name = target.to_string();
-    let kind = kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board);
-    let findings = Findings::new(name.clone(), kind);
+    let findings = Findings::new(name.clone(), kinds::board_of(target));
     let link = Sessions::new(options, name, None).report();
     let end = End::error(CheckName::Identity, cause, problem);
     conclude::conclude(plan, findings, Observations::default(), link, Err(end), options, Begun::now())

@@ -73,7 +73,7 @@ impl Found {
             }
             _ => Self {
                 target: target.to_string(),
-                kind: kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board),
+                kind: kinds::board_of(target),
                 summary: "named in the call".to_owned(),
                 device: None,
                 names: Vec::new(),

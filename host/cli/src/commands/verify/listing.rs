@@ -7,10 +7,10 @@ use crate::document::print_result;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use halfrow::board::{BoardNature, Capabilities};
+use halfrow::link::{SerialBoard, bytes_per_second, kinds};
 use halfrow::result::Variation;
 use halfrow::run::{self, Build, Part, Plan, Prices, Rates, Selection, Timing, usual_capabilities};
-use halfrow::target::Target;
-use halfrow_link::SerialBoard;
+use halfrow::target::{BoardKind, Target};
 
 /// Links for which prices are given if the target does not say how fast its link is: two UARTs and a FIFO.
 const USUAL_LINKS: [(&str, f64); 3] =
@@ -93,15 +93,13 @@ fn listing(plan: &Plan) -> Vec<Listed> {
 }
 
 fn on_links(plan: &Plan, target: &Target) -> Vec<OnLink> {
-    let nature = match target.kind.as_str() {
-        "mock" => BoardNature::Mock,
-        "sim" => BoardNature::Simulation,
-        _ => BoardNature::Hardware,
+    let nature = match kinds::board_of(target) {
+        // It has already been streamed, at no cost now.
+        BoardKind::Replay => return Vec::new(),
+        BoardKind::Mock => BoardNature::Mock,
+        BoardKind::Sim => BoardNature::Simulation,
+        BoardKind::Hardware => BoardNature::Hardware,
     };
-    // A recording has already been streamed, at no cost now.
-    if target.kind == "replay" {
-        return Vec::new();
-    }
     let capabilities = usual_capabilities(plan, nature);
     let on_link = |(link, bytes_per_second)| on_link(plan, &capabilities, link, bytes_per_second);
     match stated_rate(target) {
@@ -113,13 +111,11 @@ fn on_links(plan: &Plan, target: &Target) -> Vec<OnLink> {
 /// The bytes per second of the link, if the target gives its speed.
 fn stated_rate(target: &Target) -> Option<f64> {
     let number = |key: &str| {
-        let option = target.options.iter().find(|(name, _)| name == key);
-        option.and_then(|(_, value)| value.parse::<f64>().ok()).filter(|rate| rate.is_finite() && *rate > 0.0)
+        let rate = target.option(key)?.parse::<f64>().ok();
+        rate.filter(|rate| rate.is_finite() && *rate > 0.0)
     };
-    let board = target.options.iter().find(|(name, _)| name == "board");
-    let board = board.and_then(|(_, name)| SerialBoard::named(name)).map(|board| f64::from(board.baud));
-    // A byte takes ten bits on a UART.
-    number("speed").or_else(|| number("baud").or(board).map(|baud| baud / 10.0))
+    let board = target.option("board").and_then(SerialBoard::named).map(|board| f64::from(board.baud));
+    number("speed").or_else(|| number("baud").or(board).map(bytes_per_second))
 }
 
 fn on_link(plan: &Plan, capabilities: &Capabilities, link: String, bytes_per_second: f64) -> OnLink {
