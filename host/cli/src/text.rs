@@ -165,14 +165,8 @@ fn advice(report: &Report) -> String {
     for suspect in &report.suspects {
         push_suspect(&mut text, suspect);
     }
-    let bench = wording::technician(report);
-    if let Some(technician) = &bench {
-        push(&mut text, "do", BOLD, &format!("At the bench: {technician}"));
-    }
-    match (wording::remedy(report), bench) {
-        (Some(remedy), None) => push(&mut text, "do", BOLD, &remedy),
-        (Some(remedy), Some(_)) => push(&mut text, "", BOLD, &format!("Next: {remedy}")),
-        (None, _) => {}
+    for (place, line) in wording::what_to_do(report).iter().enumerate() {
+        push(&mut text, if place == 0 { "do" } else { "" }, BOLD, line);
     }
     let mut codes = wording::codes(report);
     if codes.is_empty() {
@@ -201,9 +195,7 @@ fn push_suspect(text: &mut String, suspect: &Suspect) {
     let share = wording::share(suspect).map_or_else(String::new, |share| format!(" ({share})"));
     let who = format!("{}{share}", suspect.place());
     push(text, "suspect", BOLD, &who);
-    push(text, "", BOLD, &suspect.evidence());
-    push(text, "", BOLD, &format!("At the bench: {}", suspect.technician()));
-    push(text, "", BOLD, &format!("Next: {}", suspect.designer()));
+    wording::of_suspect(suspect).iter().for_each(|line| push(text, "", BOLD, line));
 }
 
 /// Appends `words` with a label to their left.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use halfrow::report::wording::bench_then_next;
 use halfrow::result::{CheckName, examples};
 use halfrow::verdict::Verdict;
 use halfrow::words::sentence;
@@ -54,10 +55,7 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     for (verdict, finding) in examples::findings_with_verdicts() {
         add(&finding.code(), &|it| {
             it.sentence = finding.sentence();
-            let bench = codes::bench(&finding).map(|bench| format!("At the bench: {bench}"));
-            let next = codes::act(&finding);
-            let next = next.map(|act| if bench.is_some() { format!("Next: {act}") } else { act });
-            it.acts = bench.into_iter().chain(next).collect();
+            it.acts = bench_then_next(codes::bench(&finding), codes::act(&finding));
             (it.verdict, it.fault) = (verdict, fault(verdict));
         });
     }

@@ -20,17 +20,35 @@ pub fn summary(report: &Report) -> String {
 /// The suspects and what to do, one line each.
 pub(in crate::report) fn advice(report: &Report) -> Vec<String> {
     let said = |suspect: &Suspect| {
-        [
-            format!("{}: {}", suspect.place(), suspect.evidence()),
-            format!("At the bench: {}", suspect.technician()),
-            format!("Next: {}", suspect.designer()),
-        ]
+        let [evidence, bench, next] = of_suspect(suspect);
+        [format!("{}: {evidence}", suspect.place()), bench, next]
     };
-    let bench = technician(report);
-    let next = remedy(report).map(|remedy| if bench.is_some() { format!("Next: {remedy}") } else { remedy });
-    let bench = bench.map(|technician| format!("At the bench: {technician}"));
-    let lines = report.suspects.iter().flat_map(said).chain(bench).chain(next);
+    let lines = report.suspects.iter().flat_map(said).chain(what_to_do(report));
     lines.map(|line| plain(&line).into_owned()).collect()
+}
+
+/// What to do besides what the suspects say, in up to two lines.
+#[must_use]
+pub fn what_to_do(report: &Report) -> Vec<String> {
+    bench_then_next(technician(report), remedy(report))
+}
+
+/// What a technician does at the `bench`, then what is `next` for a designer, in up to two lines. What is next alone is for both,
+/// and stands as it is.
+#[must_use]
+pub fn bench_then_next(bench: Option<String>, next: Option<String>) -> Vec<String> {
+    let next = next.map(|remedy| if bench.is_some() { format!("Next: {remedy}") } else { remedy });
+    bench.map(|technician| format!("At the bench: {technician}")).into_iter().chain(next).collect()
+}
+
+/// What speaks against a suspect, what a technician does about it, and what is next for a designer.
+#[must_use]
+pub fn of_suspect(suspect: &Suspect) -> [String; 3] {
+    [
+        suspect.evidence(),
+        format!("At the bench: {}", suspect.technician()),
+        format!("Next: {}", suspect.designer()),
+    ]
 }
 
 /// The codes for `halfrow explain`: the finding's and those of the suspects, each once; none for a PASS.
