@@ -59,19 +59,26 @@ impl Exit {
 
     /// The verdict that the code carries; none after a usage error.
     #[must_use]
-    pub const fn verdict(self) -> Option<Verdict> {
-        match self {
-            Self::Pass => Some(Verdict::Pass),
-            Self::Fail => Some(Verdict::Fail),
-            Self::Usage => None,
-            Self::Error
-            | Self::Busy
-            | Self::NothingJudged
-            | Self::Refused
-            | Self::HungUp
-            | Self::Interrupted
-            | Self::Terminated => Some(Verdict::Error),
-        }
+    pub fn verdict(self) -> Option<Verdict> {
+        self.cause().map(Cause::verdict)
+    }
+
+    /// The cause of a result with this code; none after a usage error. A code does not tell a caller who stops a run from a person
+    /// who does.
+    #[must_use]
+    pub const fn cause(self) -> Option<Cause> {
+        Some(match self {
+            Self::Pass => Cause::Equal,
+            Self::Fail => Cause::Different,
+            Self::Usage => return None,
+            Self::Error => Cause::Station,
+            Self::Busy => Cause::Busy,
+            Self::NothingJudged => Cause::NothingJudged,
+            Self::Refused => Cause::Refused,
+            Self::HungUp => Cause::Stopped(StoppedBy::Disconnection),
+            Self::Interrupted => Cause::Stopped(StoppedBy::Person),
+            Self::Terminated => Cause::Stopped(StoppedBy::System),
+        })
     }
 
     /// Who stopped the program, if this exit code is that of a signal.

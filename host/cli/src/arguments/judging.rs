@@ -25,7 +25,6 @@ use halfrow::report::{self, ReportFolder};
 use halfrow::result::FileHash;
 use halfrow::run::{self, Lack, Plan, Provenance, RecordedRun, RunOptions};
 use halfrow::target::Target;
-use halfrow::verdict::Cause;
 
 /// How long a board may stay away if no number is given.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -276,12 +275,7 @@ fn not_begun(
     target: &Target,
     folder: Option<ReportFolder>,
 ) -> Failure {
-    let cause = match failure.exit {
-        Exit::Usage => return failure,
-        Exit::Busy => Cause::Busy,
-        Exit::Refused => Cause::Refused,
-        _ => Cause::Station,
-    };
+    let Some(cause) = failure.exit.cause() else { return failure };
     let problem = codes::problem(failure.exit, &failure.error);
     if let Some(folder) = folder
         && let Err(lack) = run::not_begun(plan, target, cause, problem, options).commit(folder)
