@@ -67,7 +67,7 @@ mod tests {
     fn every_board_is_judged_at_a_target_that_can_be_opened() {
         for board in &BOARDS {
             let target = board.target.replace("PATH", "/dev/ttyUSB99").parse().unwrap();
-            halfrow_link::check(&target).unwrap_or_else(|error| panic!("{}: {error}", board.name));
+            halfrow::link::check(&target).unwrap_or_else(|error| panic!("{}: {error}", board.name));
         }
     }
 }

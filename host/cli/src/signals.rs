@@ -15,7 +15,7 @@ use signal_hook::iterator::Signals;
 
 use crate::console;
 use crate::exit::Exit;
-use halfrow_files::written_aside;
+use halfrow::files::written_aside;
 use halfrow_program::signals::is_ignored;
 
 /// How long the last message may take.

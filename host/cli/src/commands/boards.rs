@@ -7,10 +7,10 @@ use super::{Context, Failure, print};
 use crate::bitstreams::{BOARDS, BitstreamBoard};
 use crate::document::print_result;
 use crate::exit::Exit;
+use halfrow::link::discovery::{self, Access, Answer, Found};
+use halfrow::link::kinds::{Form, KINDS};
 use halfrow::target::{BoardKind, Target, TargetError};
 use halfrow::words::{count, plain};
-use halfrow_link::discovery::{self, Access, Answer, Found};
-use halfrow_link::kinds::{Form, KINDS};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -152,7 +152,7 @@ fn state(device: &Found) -> String {
 
 #[cfg(test)]
 mod tests {
-    use halfrow_link::UsbDevice;
+    use halfrow::link::UsbDevice;
 
     use super::*;
 

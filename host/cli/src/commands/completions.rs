@@ -8,7 +8,7 @@ use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::files::{make_folder, prepare_files};
 use halfrow::call::Files;
-use halfrow_files::written_aside::write_aside;
+use halfrow::files::written_aside::write_aside;
 use halfrow_program::man_pages::{self, Shell};
 
 #[derive(Debug, Args)]

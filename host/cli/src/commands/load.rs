@@ -24,11 +24,10 @@ use crate::document::result_text;
 use crate::exit::Exit;
 use crate::{console, pool, signals};
 use halfrow::board::{Board, BoardError, OpenOptions, Stop, WhenHeld};
-use halfrow::link::{self, Class};
+use halfrow::link::{self, Class, kinds};
 use halfrow::result::BoardReport;
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::StoppedBy;
-use halfrow_link::kinds;
 
 pub(super) use error::LoadError;
 

@@ -7,8 +7,8 @@ use crate::arguments::inputs::FrameName;
 use crate::call_error::CallError;
 use crate::files::make_folder;
 use halfrow::call::Files;
+use halfrow::files::written_aside::Place;
 use halfrow::frames::{Format, check_png};
-use halfrow_files::written_aside::Place;
 
 /// The files of a call, one for each input, in the order of the inputs.
 pub(super) struct Places {
