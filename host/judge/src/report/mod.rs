@@ -10,7 +10,7 @@ pub mod wording;
 
 pub use folder::check as check_folder;
 pub use folder::{ReportError, ReportFolder};
-pub use html::document;
+pub use html::document as html_document;
 pub use html::render as html;
 pub use json::render as json;
 pub use junit::document as junit_document;

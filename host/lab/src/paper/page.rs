@@ -20,7 +20,7 @@ pub(super) fn render(exhibits: &[Exhibit]) -> Result<String, EncodingError> {
         (banner(exhibits))
         main { @for section in sections { (section) } }
     };
-    Ok(report::document("The paper, reproduced by halfrow", &body).into_string())
+    Ok(report::html_document("The paper, reproduced by halfrow", &body).into_string())
 }
 
 /// The overall result, and what could not be tried.
