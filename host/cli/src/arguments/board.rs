@@ -68,19 +68,19 @@ pub(crate) fn helped(argument: Arg, replays: Replays, without: &str) -> Arg {
 /// Refuses a recording where a board must answer new requests.
 pub(crate) fn refuse_recording(target: &Target) -> Result<(), Failure> {
     match kinds::board_of(target) {
-        BoardKind::Replay => Err(wrong(Failure::call(CallError::RecordingCorrects))),
+        BoardKind::Replay => Err(wrong_board(Failure::call(CallError::RecordingCorrects))),
         _ => Ok(()),
     }
 }
 
 /// Checks that `target` is written correctly. Its device need not exist, and a pool is not asked.
 pub(crate) fn check(target: &Target) -> Result<(), Failure> {
-    if target.kind == POOL { Ok(()) } else { link::check(target).map_err(wrong) }
+    if target.kind == POOL { Ok(()) } else { link::check(target).map_err(wrong_board) }
 }
 
 /// Refuses a fault of the mock board `target` that has no effect in a run of `plan`.
 pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
-    let fault = link::fault(target).map_err(wrong)?;
+    let fault = link::fault(target).map_err(wrong_board)?;
     let judged = plan
         .schedule(&Build::full(plan.tables.geometry().width()))
         .into_iter()
@@ -93,7 +93,7 @@ pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
     let streamed = Streamed { width, height, grid, frames, at_speed };
     match fault.and_then(|fault| fault.without_effect(&streamed)) {
         None => Ok(()),
-        Some(why) => Err(wrong(Failure::call(CallError::FaultWithoutEffect {
+        Some(why) => Err(wrong_board(Failure::call(CallError::FaultWithoutEffect {
             target: target.to_string(),
             reason: why.to_string(),
         }))),
@@ -101,7 +101,7 @@ pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
 }
 
 /// `failure`, attributed to the value of `--board`.
-pub(crate) fn wrong(failure: impl Into<Failure>) -> Failure {
+pub(crate) fn wrong_board(failure: impl Into<Failure>) -> Failure {
     failure.into().in_value_of("--board")
 }
 
@@ -141,10 +141,10 @@ impl BoardArguments {
     pub(crate) fn named(&self, settings: &Settings) -> Result<Target, Failure> {
         let target = match (&self.board, &settings.board) {
             (Some(target), _) => target.clone(),
-            (None, Some(text)) => text.parse().map_err(Failure::call).map_err(wrong)?,
+            (None, Some(text)) => text.parse().map_err(Failure::call).map_err(wrong_board)?,
             (None, None) => Target::mock(),
         };
-        pool::kind(&target).map_err(Failure::call).map_err(wrong)?;
+        pool::kind(&target).map_err(Failure::call).map_err(wrong_board)?;
         Ok(target)
     }
 
@@ -159,7 +159,7 @@ impl BoardArguments {
     pub(crate) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
         let target = self.target(settings)?;
         refuse_recording(&target)?;
-        link::open(&target).map_err(wrong)
+        link::open(&target).map_err(wrong_board)
     }
 
     /// The link to the board that is named, or to the one in `recording` if there is one.
@@ -170,13 +170,13 @@ impl BoardArguments {
     ) -> Result<Candidate, Failure> {
         match recording {
             None => self.candidate(settings),
-            Some(recording) => link::replay(&self.target(settings)?, recording).map_err(wrong),
+            Some(recording) => link::replay(&self.target(settings)?, recording).map_err(wrong_board),
         }
     }
 
     /// The recording, if the target is one. A pool lends none.
     pub(crate) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
-        link::recording(&self.named(settings)?).map_err(wrong)
+        link::recording(&self.named(settings)?).map_err(wrong_board)
     }
 
     pub(crate) fn open_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {

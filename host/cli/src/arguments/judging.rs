@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use halfrow_program::number::{any, whole_number};
 
-use super::board::{BoardArguments, check_fault, wrong};
+use super::board::{BoardArguments, check_fault, wrong_board};
 use super::given::{Given, yes_or_no};
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
@@ -208,7 +208,7 @@ impl RunArguments {
                 .writes_report("--report", self.report_path(settings)),
         )
         .map_err(|error| match (error.option(), &error) {
-            (Some(link::WRITTEN_FILE), _) => wrong(Failure::call(error)),
+            (Some(link::WRITTEN_FILE), _) => wrong_board(Failure::call(error)),
             (Some(option), _) => Failure::call(error).in_value_of(option),
             (None, FilesError::Report(_)) => Failure::call(error).in_value_of("--report"),
             (None, _) => Failure::call(error),

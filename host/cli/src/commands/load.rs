@@ -18,7 +18,7 @@ use serde_json::json;
 use self::loader::Call;
 use self::record::Record;
 use super::{Context, Failure, print_or_tell};
-use crate::arguments::board::{refuse_recording, wrong};
+use crate::arguments::board::{refuse_recording, wrong_board};
 use crate::bitstreams::{BOARDS, BitstreamBoard};
 use crate::document::result_text;
 use crate::exit::Exit;
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let record = record::read(&arguments.file).map_err(Failure::call)?;
     let onto = onto(arguments, record.as_ref()).map_err(Failure::call)?;
     let board = match (&arguments.board, &context.settings.board) {
-        (None, Some(text)) => Some(text.parse().map_err(Failure::call).map_err(wrong)?),
+        (None, Some(text)) => Some(text.parse().map_err(Failure::call).map_err(wrong_board)?),
         (target, _) => target.clone(),
     };
     board.as_ref().map_or(Ok(()), check)?;
@@ -99,12 +99,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 /// Checks that the board at `target` can be greeted once it is loaded: then it is too late to refuse the call.
 fn check(target: &Target) -> Result<(), Failure> {
     if target.kind == pool::POOL {
-        return Err(wrong(Failure::call(LoadError::OfPool { target: target.to_string() })));
+        return Err(wrong_board(Failure::call(LoadError::OfPool { target: target.to_string() })));
     }
     refuse_recording(target)?;
-    link::check(target).map_err(wrong)?;
+    link::check(target).map_err(wrong_board)?;
     if kinds::board_of(target) != BoardKind::Hardware {
-        return Err(wrong(Failure::call(LoadError::BuiltIn { target: target.to_string() })));
+        return Err(wrong_board(Failure::call(LoadError::BuiltIn { target: target.to_string() })));
     }
     Ok(())
 }
