@@ -122,15 +122,9 @@ pub(crate) fn is_inner(ahead: f64, height: f64) -> bool {
 }
 
 impl Camera {
-    /// The errors that `tables` leave against the exact projection at every `step`th column and row of the frame: how many
-    /// columns away from the right place outputs are taken. The tables must be of the camera's geometry; rows and columns that
-    /// they do not have do not count.
-    #[must_use]
-    pub fn grid_residuals(&self, tables: &TableSet, step: usize) -> GridResiduals {
-        Lattice::new(self, step, step).residuals(tables)
-    }
-
-    /// [`Self::grid_residuals`] of several tables, in little more time than for one.
+    /// The errors that each of `tables` leaves against the exact projection at every `step`th column and row of the frame: how
+    /// many columns away from the right place outputs are taken. The tables must be of the camera's geometry; rows and columns
+    /// that they do not have do not count. Several tables take little more time than one.
     #[must_use]
     pub fn each_grid_residuals<const N: usize>(
         &self,

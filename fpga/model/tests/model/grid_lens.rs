@@ -26,8 +26,13 @@ fn half_dsl215() -> Camera {
     camera((376, 240), dsl215().scaled(0.5).unwrap(), centre)
 }
 
+fn residuals(camera: &Camera, tables: &TableSet, step: usize) -> GridResiduals {
+    let [found] = camera.each_grid_residuals([tables], step);
+    found
+}
+
 fn largest(camera: &Camera, tables: &TableSet) -> f64 {
-    camera.grid_residuals(tables, 3).inner.max
+    residuals(camera, tables, 3).inner.max
 }
 
 fn check_ring(tables: &TableSet) {
@@ -63,7 +68,7 @@ fn what_a_source_shows_belongs_at_its_output() {
 fn the_golden_table_leaves_what_was_computed_elsewhere() {
     let camera = paper((1920, 1080), 1.0);
     let GridResiduals { circle, inner, rim, beyond } =
-        camera.grid_residuals(&camera.grid_by_formula(shape(5, 6)), 5);
+        residuals(&camera, &camera.grid_by_formula(shape(5, 6)), 5);
     assert!(
         (0.001_25..0.001_35).contains(&circle.max) && (0.000_15..0.000_25).contains(&circle.mean),
         "{circle:?}"
@@ -72,7 +77,7 @@ fn the_golden_table_leaves_what_was_computed_elsewhere() {
     assert_eq!((inner, rim, beyond), (circle, GridResidual::default(), 0.0));
     assert!(circle.share.abs() < f64::EPSILON);
     // Eq. 9 leaves errors of up to 35 columns in the corrected frame.
-    let by_rows = camera.grid_residuals(&camera.equation_9(), 5);
+    let by_rows = residuals(&camera, &camera.equation_9(), 5);
     assert!(by_rows.circle.max > 10.0 && by_rows.circle.share > 0.9, "{by_rows:?}");
 }
 
@@ -143,7 +148,7 @@ fn is_inner(x: f64, y: f64) -> bool {
 #[test]
 fn what_no_table_leaves_is_the_projection_itself() {
     let (lens, camera) = around_the_circle();
-    let found = camera.grid_residuals(&identity(*camera.geometry(), shape(6, 6)), 1);
+    let found = residuals(&camera, &identity(*camera.geometry(), shape(6, 6)), 1);
     let shown = places().filter(|&(x, y)| x.abs() <= 80.0 && y.abs() < 0.998 * 80.0);
     let wrong: Vec<_> = shown.map(|(x, y)| (exact_inverse(&lens, x, y).unwrap().0, x, y)).collect();
     let amounts = |is_wanted: fn(f64, f64) -> bool| {
@@ -202,7 +207,7 @@ fn a_frame_that_shows_more_than_the_circle_has_a_grid() {
     assert!((last..=last + 1.5 * 47.5).contains(&far), "{far}");
     let best = camera.best_grid(2048).unwrap();
     check_ring(&best);
-    let residuals = camera.grid_residuals(&best, 1);
+    let residuals = residuals(&camera, &best, 1);
     assert!(residuals.inner.max < 0.5 && residuals.inner.share < residuals.circle.share, "{residuals:?}");
 }
 
@@ -222,7 +227,7 @@ proptest! {
         if let Ok(camera) = Camera::new(geometry, lens, centre, 180.0) {
             let tables = camera.grid_by_formula(shape(v, k));
             prop_assert_eq!(tables.entries().len(), shape(v, k).entries(&geometry));
-            let residuals = camera.grid_residuals(&tables, 7);
+            let residuals = residuals(&camera, &tables, 7);
             prop_assert!(residuals.circle.max.is_finite());
             // Every row begins inside the frame or to the right of it.
             let begins = |row| tables.values(row).unwrap().coordinate(0) >= -(1 << 14);
@@ -239,12 +244,12 @@ fn rows_that_tables_do_not_have_leave_nothing() {
         Camera::new(geometry, lens.into(), geometry.middle(), 180.0).unwrap()
     };
     let (high, low) = (of_height(48), of_height(4));
-    let of_low_rows = high.grid_residuals(&low.equation_9(), 7);
+    let of_low_rows = residuals(&high, &low.equation_9(), 7);
     assert!(of_low_rows.circle.max.is_finite());
     let narrow = Geometry::centred(64, 48, BitDepth::Twelve).unwrap();
     let wide = Geometry::centred(200, 48, BitDepth::Twelve).unwrap();
     let camera =
         Camera::new(wide, Equidistant::from_radius(60.0).unwrap().into(), wide.middle(), 180.0).unwrap();
     let tables = TableSet::from_units(narrow, &[1 << 23; 48]).unwrap();
-    assert!(camera.grid_residuals(&tables, 7).circle.max.is_finite());
+    assert!(residuals(&camera, &tables, 7).circle.max.is_finite());
 }
