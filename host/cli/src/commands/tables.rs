@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     )
     .map_err(Failure::call)?;
     let chosen = optics::choose(None, &arguments.lens, kernel)?;
-    let outside = chosen.optics.camera.rows_outside_circle();
+    let outside = chosen.rows_outside_circle.unwrap_or_default();
     let how = outside_circle(&chosen.tables);
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
     format.write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
