@@ -23,7 +23,7 @@ pub struct Kind {
     pub forms: &'static [Form],
     /// What is at the other end, as far as the kind tells.
     pub board: BoardKind,
-    /// Checks that a target's address and options suit the kind, without looking for a device, host or file.
+    /// Checks that a target's address and options suit the kind, without opening anything.
     pub(crate) check: fn(&Target) -> Result<(), OpenError>,
     /// Opens the link without sending anything over it.
     pub(crate) open: fn(&Target) -> Result<Box<dyn Link>, OpenError>,

@@ -160,6 +160,11 @@ impl Bench {
         welcome
     }
 
+    /// The number of a session that is not open.
+    pub(crate) fn foreign(&self) -> u8 {
+        following(self.session)
+    }
+
     /// The board's capabilities.
     pub fn capabilities(&mut self) -> Capabilities {
         let answer = self.done(&Request::Capabilities);
@@ -184,6 +189,11 @@ impl Bench {
         self.window = window;
         self.say(&Request::RowAck)
     }
+}
+
+/// The session number after this one.
+pub(crate) fn following(session: u8) -> u8 {
+    if session == 255 { 1 } else { session + 1 }
 }
 
 /// The bytes of a packet.

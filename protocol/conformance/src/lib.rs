@@ -46,7 +46,7 @@ pub mod uploads;
 
 use proptest::test_runner::{Config, FileFailurePersistence};
 
-pub use bench::{Bench, HELLO, ReceivedPacket, rows_of};
+pub use bench::{Bench, HELLO, ReceivedPacket, rows_of, wire};
 pub use commits::is_busy_while_a_row_is_inside;
 pub use subject::{Boards, Build, Subject};
 

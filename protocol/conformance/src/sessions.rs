@@ -3,7 +3,7 @@
 use halfrow_protocol::message::{Hello, RefusalCode, Reply, Request, Reset, ResetLevel};
 use halfrow_protocol::{Header, Kind};
 
-use crate::bench::{Bench, HELLO, rows_of, wire};
+use crate::bench::{Bench, HELLO, following, rows_of, wire};
 use crate::frames::{ready, row};
 use crate::{Boards, Build, offered};
 
@@ -49,7 +49,7 @@ pub(crate) fn the_same_nonce_of_another_host_opens_a_session_of_its_own(on: &dyn
     let session = bench.session;
     let other = Hello { nonce: HELLO.nonce, ..OTHER };
     assert_eq!(bench.refused(&Request::Hello(other)).0, RefusalCode::Held);
-    assert_eq!(bench.greet(&Hello { take_over: true, ..other }).session, next(session));
+    assert_eq!(bench.greet(&Hello { take_over: true, ..other }).session, following(session));
     assert_eq!(bench.status().next_row_in, 0);
 }
 
@@ -73,17 +73,12 @@ pub(crate) fn rows_are_counted_from_0_again_in_a_new_session(on: &dyn Boards) {
     assert_eq!(numbers, [0, 1, 2, 3]);
 }
 
-/// The session number after this one.
-fn next(session: u8) -> u8 {
-    if session == 255 { 1 } else { session + 1 }
-}
-
 pub(crate) fn sessions_are_counted_and_1_comes_behind_255(on: &dyn Boards) {
     let mut bench = new_board(on);
     let mut last = bench.greet(&HELLO).session;
     for nonce in 0..600 {
         let session = bench.greet(&Hello { nonce, ..HELLO }).session;
-        assert_eq!(session, next(last));
+        assert_eq!(session, following(last));
         last = session;
     }
 }
@@ -92,7 +87,7 @@ pub(crate) fn a_session_that_was_closed_is_counted(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
     let closed = bench.session;
     bench.done(&Request::Reset(Reset { level: ResetLevel::Session, next_row: 0 }));
-    assert_eq!(bench.greet(&Hello { nonce: 1, ..HELLO }).session, next(closed));
+    assert_eq!(bench.greet(&Hello { nonce: 1, ..HELLO }).session, following(closed));
 }
 
 pub(crate) fn without_a_common_version_the_refusal_names_the_boards(on: &dyn Boards) {
@@ -147,7 +142,7 @@ pub(crate) fn a_refusal_of_a_foreign_packet_carries_its_session_number(on: &dyn 
 
 pub(crate) fn the_session_is_looked_at_before_kind_and_payload(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
-    bench.session += 1;
+    bench.session = bench.foreign();
     for kind in [0x55, Kind::Status.code()] {
         let header = bench.header(kind);
         assert_eq!(bench.answer(&header, &[]).refusal(), Some((RefusalCode::Session, 0)));
@@ -157,7 +152,7 @@ pub(crate) fn the_session_is_looked_at_before_kind_and_payload(on: &dyn Boards) 
 pub(crate) fn a_foreign_acknowledgement_is_counted_and_not_answered(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
     let open = bench.session;
-    bench.session = open + 1;
+    bench.session = bench.foreign();
     assert_eq!(bench.say(&Request::RowAck), []);
     bench.session = open;
     let status = bench.status();
@@ -168,7 +163,7 @@ pub(crate) fn a_foreign_packet_is_not_carried_out(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, 0..2);
     let open = bench.session;
-    (bench.session, bench.window) = (open + 1, 1);
+    (bench.session, bench.window) = (bench.foreign(), 1);
     bench.ask(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 9 }));
     assert_eq!(bench.send(&row(4, 2))[0].refusal(), Some((RefusalCode::Session, 0)));
     (bench.session, bench.window) = (open, 0);
@@ -187,8 +182,10 @@ pub(crate) fn the_window_of_hello_is_not_looked_at(on: &dyn Boards) {
 
 pub(crate) fn a_hello_that_names_a_session_is_answered_with_the_one_it_opens(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
-    for session in [bench.session, 77] {
-        let hello = Hello { nonce: session.into(), ..HELLO };
+    // Open at first, and no longer at the second time.
+    let session = bench.session;
+    for nonce in [1, 2] {
+        let hello = Hello { nonce, ..HELLO };
         let header = Header { session, ..bench.header(Kind::Hello.code()) };
         let heard = bench.receive(&wire(&header, |payload| Request::Hello(hello).write(payload)));
         let Reply::Hello(welcome) = heard[0].reply() else { panic!("{heard:?}") };

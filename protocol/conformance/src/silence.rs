@@ -67,9 +67,10 @@ pub(crate) fn damaged_and_foreign_packets_do_not_count(on: &dyn Boards) {
     let mut damaged = bench.packet(&Request::Echo(b"damaged"));
     damaged[8] ^= 0x10;
     assert_eq!(bench.receive(&damaged), []);
-    let session = std::mem::replace(&mut bench.session, 99);
+    let open = bench.session;
+    bench.session = bench.foreign();
     bench.ask(&Request::Echo(b"foreign"));
-    bench.session = session;
+    bench.session = open;
     bench.refused(&OTHER);
     assert_eq!(other_is_told(&mut bench, 9000), Some((RefusalCode::Held, 10)));
     assert_eq!(other_is_told(&mut bench, 10_000), None);

@@ -100,9 +100,10 @@ pub(crate) fn clearing_answers_with_the_counters_before_it_and_leaves_what_is_no
     let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, [0, 1, 3, 3, 0]);
     bench.acknowledge(1);
-    bench.session += 1;
+    let open = bench.session;
+    bench.session = bench.foreign();
     bench.ask(&Request::Capabilities);
-    bench.session -= 1;
+    bench.session = open;
     bench.receive(&[0, 1, 2, 3, 0]);
     let before = bench.status();
     assert_eq!(bench.status_and(true), Status { packets: before.packets + 1, ..before });

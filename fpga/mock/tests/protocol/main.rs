@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
 
 mod at_speed;
+mod first_session;
 mod mock_grids;
 mod mock_only;
 
