@@ -48,7 +48,8 @@ RECORD = "signature:I samples:I rows:H least_latency:H most_latency:H pauses:H g
 TRAPPED = "frame:I row:H width:H signature:I samples"
 MEANINGS = {"level": range(3), "table": TABLES, "bank": range(2), "mode": range(4),
             "state": range(3), "kept": range(2)}  # the values that have a meaning
-LOOKED_AT = {"flags": lambda value: value & 1, "take_over": bool, "clear": bool}  # the part of a value that has a meaning
+# The part of a value that has a meaning.
+LOOKED_AT = {"flags": lambda value: value & 1, "take_over": bool, "clear": bool, "trap": bool}
 
 
 def unstuff(piece):
@@ -88,7 +89,7 @@ def capabilities(data, fields):
     while data:
         tag, value, data = data[0], data[2 : 2 + data[1]], data[2 + data[1] :]
         if tag == 0x11:
-            value = value[:1].strip(b"\0")
+            value = b"\1" if any(value[:1]) else b""
         if tag in CAPABILITIES and (value or tag != 0x11):
             fields[CAPABILITIES[tag]] = value.decode() if tag == 0x21 else int.from_bytes(value, "little")
         elif tag == 0x10 and value:
