@@ -63,7 +63,7 @@ pub enum LensContentError {
         /// The keys that it goes by.
         keys: String,
     },
-    /// The lens file has two keys that differ only by case or punctuation.
+    /// The lens file has two keys that differ only by case or punctuation, or that mean the same and have different numbers.
     #[error("`{second}` says again what `{first}` says; leave one of them out")]
     Twice {
         /// The key that is there first.

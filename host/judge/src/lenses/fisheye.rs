@@ -56,6 +56,8 @@ fn lens(document: &Yaml<'_>) -> Result<LensFile, LensContentError> {
 fn camera(keys: &Keys<'_>) -> Result<LensFile, LensContentError> {
     let names: [&[&str]; 7] = [&MATRIX, &FOUR_INTRINSICS, &DISTORTION, &MODELS, &SIZE, &WIDTH, &HEIGHT];
     names.concat().into_iter().try_for_each(|name| keys.check_once(name))?;
+    let lists: [&[&str]; 5] = [&MATRIX, &DISTORTION, &SIZE, &WIDTH, &HEIGHT];
+    lists.into_iter().try_for_each(|names| keys.check_agree(names))?;
     check_model(keys)?;
     let [fx, skew, cx, fy, cy] = matrix(keys)?;
     if fx == 0.0 || fy == 0.0 {
@@ -122,18 +124,32 @@ fn coefficients(keys: &Keys<'_>) -> Result<[f64; 4], LensContentError> {
 
 /// Columns and rows of the pictures. ROS's drivers write 0 x 0 if they do not know them.
 fn size(keys: &Keys<'_>) -> Result<Option<(usize, usize)>, LensContentError> {
-    let sides = if let Some((key, value)) = keys.find(&SIZE) {
-        numbers(key, value)?
-    } else if keys.find(&WIDTH).is_none() && keys.find(&HEIGHT).is_none() {
-        return Ok(None);
-    } else {
-        let (width, columns) = keys.get("image width", &WIDTH)?;
-        let (height, rows) = keys.get("image height", &HEIGHT)?;
-        vec![number(width, columns)?, number(height, rows)?]
+    let together =
+        keys.find(&SIZE).map(|(key, value)| Ok::<_, LensContentError>((key, numbers(key, value)?)));
+    let together = together.transpose()?;
+    let sides = match (together, sides(keys)) {
+        (Some((first, together)), Ok(Some((second, apart)))) if together != apart => {
+            return Err(LensContentError::Twice { first: quoted(first), second: quoted(second) });
+        }
+        (Some((_, together)), _) => together,
+        (None, apart) => match apart? {
+            Some((_, sides)) => sides.to_vec(),
+            None => return Ok(None),
+        },
     };
     match sides[..] {
         [0.0, 0.0] => Ok(None),
         [width, height] => picture_size(width, height).map(Some),
         _ => Err(LensContentError::Size),
     }
+}
+
+/// Width and height under keys of their own, and the width's key.
+fn sides<'a>(keys: &Keys<'a>) -> Result<Option<(&'a str, [f64; 2])>, LensContentError> {
+    if keys.find(&WIDTH).is_none() && keys.find(&HEIGHT).is_none() {
+        return Ok(None);
+    }
+    let (width, columns) = keys.get("image width", &WIDTH)?;
+    let (height, rows) = keys.get("image height", &HEIGHT)?;
+    Ok(Some((width, [number(width, columns)?, number(height, rows)?])))
 }

@@ -77,6 +77,24 @@ impl<'a> Keys<'a> {
         }
     }
 
+    /// Refuses two of `names`, which mean the same, with different numbers: it would be unclear which are meant.
+    pub(super) fn check_agree(&self, names: &[&str]) -> Result<(), LensContentError> {
+        let each = names.iter().filter_map(|name| self.find(&[name]));
+        let mut said = each.filter_map(|(key, value)| {
+            Some((
+                key,
+                numbers(key, value).or_else(|_| Ok::<_, LensContentError>(vec![number(key, value)?])).ok()?,
+            ))
+        });
+        let Some((first, numbers)) = said.next() else { return Ok(()) };
+        match said.find(|(_, other)| *other != numbers) {
+            Some((second, _)) => {
+                Err(LensContentError::Twice { first: quoted(first), second: quoted(second) })
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Like [`Self::find`], for `what` that must exist.
     pub(super) fn get(
         &self,

@@ -273,6 +273,25 @@ fn a_file_of_two_lenses_is_taken_for_neither() {
 }
 
 #[test]
+fn keys_that_mean_the_same_must_say_the_same() {
+    for (more, first, second) in [
+        ("K: [1, 0, 2, 0, 3, 4, 0, 0, 1]", "camera_matrix", "K"),
+        ("D: [0.5, 0, 0, 0]", "distortion_coefficients", "D"),
+        ("image_size: [1, 2]", "image_size", "image_width"),
+        ("width: 1", "image_width", "width"),
+    ] {
+        let both = format!("distortion_model: equidistant\n{more}");
+        let sentence = format!("`{second}` says again what `{first}` says");
+        says(CAMERA_INFO, "distortion_model: equidistant", &both, &sentence);
+    }
+    let agrees = "distortion_model: equidistant\nimage_size: [1280, 720]";
+    assert_eq!(
+        LensFile::parse(&with(CAMERA_INFO, "distortion_model: equidistant", agrees)),
+        LensFile::parse(CAMERA_INFO)
+    );
+}
+
+#[test]
 fn a_key_that_is_there_in_two_spellings_is_refused() {
     says(
         CAMERA_INFO,
