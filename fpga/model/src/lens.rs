@@ -60,7 +60,7 @@ pub enum LensError {
     /// An image radius outside [`MIN_RADIUS`] to [`MAX_RADIUS`].
     #[error(
         "an image radius of {} pixels is outside {min} to {max:e}; give the distance in pixels from the optical \
-         centre to where a ray at 90 degrees lands",
+         centre to where a ray at 90 degrees lands, or a focal length, pitch and field of view that lead there",
         Short(*.0),
         min = MIN_RADIUS,
         max = MAX_RADIUS
@@ -72,9 +72,9 @@ pub enum LensError {
     /// A pixel pitch that is not above zero.
     #[error("a pixel pitch of {} um is not above zero; take it from the sensor's data sheet", Short(*.0))]
     PixelPitch(f64),
-    /// A field of view outside 0° to 360°.
+    /// A field of view that is not above 0°, or is above 360°.
     #[error(
-        "a field of view of {} degrees is outside 0 to 360; give the full angle across the image circle, \
+        "a field of view of {} degrees is not above 0 and at most 360; give the full angle across the image circle, \
          180 for a hemisphere",
         Short(*.0)
     )]

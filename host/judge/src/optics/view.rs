@@ -69,6 +69,8 @@ impl View {
     fn is_innocent_of(&self, error: &CameraError) -> bool {
         match error {
             CameraError::Lens(LensError::FieldOfView(_)) => false,
+            // The circle's radius, which the lens has at the paper's field of view and this view at another.
+            CameraError::Lens(LensError::Radius(_)) => self.field_of_view == PAPER_FIELD,
             CameraError::Lens(_) => true,
             CameraError::Geometry(_) => self.centre_x.is_none(),
             CameraError::CentreRow(_) => self.centre_y.is_none(),
