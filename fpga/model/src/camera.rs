@@ -1,5 +1,7 @@
 //! A lens in front of a frame: its row factors, by Eq. 9 or fitted, and the error that they leave.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::grid::{height_in_circle, is_inner};
 use crate::lens::{Short, is_positive};
 use crate::projection::{is_outside, shrink_factor};
@@ -228,6 +230,19 @@ impl Camera {
     #[must_use]
     pub fn rows_outside_circle(&self) -> usize {
         (0..self.geometry.height()).filter(|&row| is_outside(self.radius(), self.height_of(row))).count()
+    }
+
+    /// How far above and below the axis the circle of 180 degrees reaches, in rows: the rows that the exact projection has,
+    /// whatever [`Self::field_of_view`] is.
+    #[must_use]
+    pub fn hemisphere_height(&self) -> f64 {
+        self.lens.lowest_row(FRAC_PI_2)
+    }
+
+    /// How many rows lie above or below the circle of 180 degrees.
+    #[must_use]
+    pub fn rows_outside_hemisphere(&self) -> usize {
+        (0..self.geometry.height()).filter(|&row| height_in_circle(self, row) >= 1.0).count()
     }
 
     fn offset(&self, column: usize, row: usize) -> (f64, f64) {

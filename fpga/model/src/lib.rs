@@ -55,5 +55,6 @@ pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Short, Spherical}
 pub use profile::Profile;
 pub use projection::{exact, exact_inverse, simplified, simplified_inverse, stretch_factor};
 pub use real::{correct_real, round_to_frame};
+pub use ring::LONGEST_RING;
 pub use row_factor::{RowFactor, RowFactorError};
 pub use table::{TableError, TableSet};

@@ -4,6 +4,10 @@ use crate::grid::rounded;
 use crate::table::Entries;
 use crate::{RowFactor, RowValues, TableError, TableSet, source};
 
+/// The most samples that a ring may hold: the greatest power of two in capability 07 (WIRE.md). What a board with a shorter one
+/// takes is known only when it is asked.
+pub const LONGEST_RING: usize = 1 << 15;
+
 /// n of a row's first and last column. j − n never falls along a row, so these two decide.
 type Ends = [i64; 2];
 

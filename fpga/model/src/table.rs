@@ -1,5 +1,6 @@
 //! The table set: row factors or a grid of factors. This is all that the datapath keeps of the lens.
 
+use std::fmt;
 use std::ops::RangeInclusive;
 
 use crate::grid::{ENTRY_BITS, Grid, GridFault};
@@ -79,8 +80,9 @@ pub enum TableError {
     },
     /// A row that ends right of the frame.
     #[error(
-        "row {row} ends {excess} columns right of the frame; lower the offsets of its grid rows, or make the grid from \
-         the lens again"
+        "row {row} ends {} right of the frame; lower the offsets of its grid rows, or make the grid from \
+         the lens again",
+        Columns(*.excess)
     )]
     AfterLast {
         /// The first such row.
@@ -93,8 +95,9 @@ pub enum TableError {
     CentreRow(f64),
     /// A row that needs samples before they have arrived.
     #[error(
-        "row {row} needs samples {excess} columns later than half a row of delay brings them; \
-         move the optical centre to the left, towards the middle, or give a larger image radius"
+        "row {row} needs samples {} later than half a row of delay brings them; \
+         move the optical centre to the left, towards the middle, or give a larger image radius",
+        Columns(*.excess)
     )]
     LookAhead {
         /// The first such row.
@@ -104,8 +107,9 @@ pub enum TableError {
     },
     /// A row that needs samples that the ring has already overwritten.
     #[error(
-        "row {row} needs samples {excess} columns older than a ring of {ring} still holds; move the optical centre \
-         to the right, towards the middle, give a larger image radius, or use a build with a longer ring"
+        "row {row} needs samples {} older than a ring of {ring} still holds; move the optical centre \
+         to the right, towards the middle, give a larger image radius, or use a build with a longer ring",
+        Columns(*.excess)
     )]
     LookBack {
         /// The first such row.
@@ -115,6 +119,15 @@ pub enum TableError {
         /// Samples in the ring.
         ring: usize,
     },
+}
+
+/// A count of columns in a message.
+struct Columns(usize);
+
+impl fmt::Display for Columns {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} column{}", self.0, if self.0 == 1 { "" } else { "s" })
+    }
 }
 
 impl TableSet {

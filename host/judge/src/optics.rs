@@ -13,7 +13,8 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use halfrow_model::{
-    Camera, Equidistant, GridShape, Interpolant, Kernel, LensError, Phase, RowFactor, TableError, TableSet,
+    Camera, Equidistant, GridShape, Interpolant, Kernel, LONGEST_RING, LensError, Phase, RowFactor,
+    TableError, TableSet,
 };
 
 pub use error::OpticsError;
@@ -34,10 +35,6 @@ pub const PAPER_FIELD: f64 = 180.0;
 
 /// The prefix that names an equidistant lens in place of a lens file. R in pixels follows.
 pub const EQUIDISTANT: &str = "equidistant:";
-
-/// The most samples that a board's line memory may hold: the greatest power of two in capability 07 (WIRE.md). What a board with
-/// a shorter one takes is known only when it is asked.
-pub const LONGEST_RING: usize = 1 << 15;
 
 /// How tables are computed from a lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,8 +172,8 @@ impl Optics {
     /// # Errors
     /// [`OpticsError::OutsideCircle`]
     pub fn check_circle(&self, tables: &TableSet) -> Result<(), OpticsError> {
-        let (rows, outside) = (self.camera.geometry().height(), self.camera.rows_outside_circle());
-        let (radius, centre) = (self.camera.radius(), self.camera.centre().1);
+        let (rows, outside) = (self.camera.geometry().height(), self.rows_outside_circle(tables));
+        let (radius, centre) = (self.circle_radius(tables), self.camera.centre().1);
         let stretches = outside < rows && tables.entries().any(|entry| entry != RowFactor::ONE.get());
         if outside > 0 && !stretches {
             return Err(OpticsError::OutsideCircle { outside, rows, radius, centre });
@@ -191,6 +188,23 @@ impl Optics {
         Ok(())
     }
 
+    /// The radius of the circle in which `tables` of this lens correct, in pixel widths: the lens's own, or for a grid, which
+    /// follows the exact projection whatever the lens's field of view is, that of 180 degrees.
+    fn circle_radius(&self, tables: &TableSet) -> f64 {
+        match tables.shape() {
+            None => self.camera.radius(),
+            Some(_) => self.camera.hemisphere_height() * self.camera.lens().pixel_height(),
+        }
+    }
+
+    /// How many rows lie outside the circle in which `tables` of this lens correct.
+    fn rows_outside_circle(&self, tables: &TableSet) -> usize {
+        match tables.shape() {
+            None => self.camera.rows_outside_circle(),
+            Some(_) => self.camera.rows_outside_hemisphere(),
+        }
+    }
+
     /// A sentence on where `tables`, made for this lens, come from.
     #[must_use]
     pub fn source_of(&self, tables: &TableSet) -> String {
@@ -200,7 +214,8 @@ impl Optics {
     /// A sentence on what the lens is.
     #[must_use]
     pub fn source(&self) -> String {
-        let degrees = self.camera.field_of_view().to_degrees() / 2.0;
+        // Without what the conversion to radians and back added.
+        let degrees = (self.camera.field_of_view().to_degrees() / 2.0 * 1e9).round() / 1e9;
         // 90 degrees is the angle that R means in Eq. 9, and on every page.
         let of_angle = if degrees == 90.0 { String::new() } else { format!(" at {degrees} degrees") };
         format!("{}, R = {:.3} pixels{of_angle}", self.name, self.camera.radius())
@@ -307,7 +322,7 @@ fn unchecked(
         optics.check_circle(&tables)?;
         let name = kernel_name.as_deref().unwrap_or(Interpolant::Hermite.name());
         let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
-        let rows_outside_circle = Some(optics.camera.rows_outside_circle());
+        let rows_outside_circle = Some(optics.rows_outside_circle(&tables));
         let source = format!("{from}, {name} kernel");
         return Ok(Chosen { optics, tables, kernel, kernel_file, source, rows_outside_circle });
     };

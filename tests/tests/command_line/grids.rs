@@ -228,3 +228,16 @@ fn the_nodes_of_a_grid_are_as_far_apart_as_a_board_takes_them() {
         assert_eq!(tables["k"], k, "{}", tables["k"]);
     }
 }
+
+/// A grid ends where 90 degrees are, at |y| = π/2 · 0.15/0.0022 = 107.1 rows from the middle of 320, so 106 rows are outside.
+#[test]
+fn a_grid_has_the_circle_of_180_degrees_whatever_the_field_of_view() {
+    let folder = Folder::new();
+    for field in ["60", "180", "220"] {
+        let size = ["--width", "320", "--height", "320"];
+        let lens = ["--focal-length", "0.15", "--pixel-pitch", "2.2", "--field-of-view", field];
+        let made = ["tables", "--json", "--projection", "exact", "--overwrite", "-o", "x.json"];
+        let call: Vec<_> = made.into_iter().chain(size).chain(lens).collect();
+        assert_eq!(folder.halfrow(call).json()["rows_outside_circle"], 106, "{field}");
+    }
+}

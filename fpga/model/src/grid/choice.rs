@@ -2,7 +2,7 @@
 
 use super::fit::fitted;
 use super::lattice::Lattice;
-use crate::{Camera, GridShape, TableSet};
+use crate::{Camera, GridShape, LONGEST_RING, TableSet};
 
 /// Columns between the outputs to which a grid is fitted.
 const COLUMN_STEP: usize = 8;
@@ -10,6 +10,9 @@ const COLUMN_STEP: usize = 8;
 /// The most rows between those outputs, and about how many rows they lie on at least.
 const ROW_STEP: usize = 4;
 const ROWS: usize = 128;
+
+/// How much nearer to the right places, in columns, a grid must be to ask for a longer ring than the smallest for its width.
+const WORTH_A_RING: f64 = 0.05;
 
 /// Shapes to which a grid is fitted: those whose closed form has the least largest error.
 const TRIED: usize = 2;
@@ -41,11 +44,11 @@ impl Camera {
     /// gives the same grid.
     #[must_use]
     pub fn fitted_grid(&self, shape: GridShape) -> TableSet {
-        fitted(self, shape, &self.lattice())
+        fitted(self, shape, &self.lattice(), self.shortest_ring()).1
     }
 
     /// The grid of at most `entries` entries with the least largest error in the inner part of the picture, preferably one that
-    /// the smallest ring for this width can serve.
+    /// the smallest ring for this width can serve: another one only if it is more than 0.05 columns nearer.
     ///
     /// # Errors
     /// [`GridRoomError`] when every grid has more entries.
@@ -69,15 +72,30 @@ impl Camera {
     ) -> Result<TableSet, GridRoomError> {
         let geometry = self.geometry();
         let coarsest = all.clone().next().unwrap_or(GridShape::COARSEST);
-        let fits = |shape: &GridShape| shape.entries(geometry) <= entries;
+        let shapes: Vec<_> = all.filter(|shape| shape.entries(geometry) <= entries).collect();
         let lattice = self.lattice();
-        let error = |tables: &TableSet| lattice.error(tables);
-        let mut shapes: Vec<_> =
-            all.filter(fits).map(|shape| (error(&self.grid_by_formula(shape)), shape)).collect();
+        let served_by = |ring| self.best_of(&shapes, &lattice, ring);
+        let best = served_by(self.shortest_ring()).map(|short| {
+            if short.0 <= WORTH_A_RING {
+                return short;
+            }
+            served_by(LONGEST_RING).filter(|long| long.0 + WORTH_A_RING < short.0).unwrap_or(short)
+        });
+        best.map(|(_, tables)| tables).ok_or_else(|| self.no_room(entries, coarsest))
+    }
+
+    /// The best grid of one of these shapes that a ring of `ring` samples can serve, and its largest error; none without shapes.
+    fn best_of(&self, shapes: &[GridShape], lattice: &Lattice, ring: usize) -> Option<(f64, TableSet)> {
+        let closed = |&shape: &GridShape| (lattice.error(&self.grid_by_formula(shape), ring), shape);
+        let mut shapes: Vec<_> = shapes.iter().map(closed).collect();
         shapes.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let tried = shapes.into_iter().take(TRIED).map(|(_, shape)| fitted(self, shape, &lattice));
-        let best = tried.min_by(|one, other| error(one).total_cmp(&error(other)));
-        best.ok_or_else(|| self.no_room(entries, coarsest))
+        let tried = shapes.into_iter().take(TRIED).map(|(_, shape)| fitted(self, shape, lattice, ring));
+        tried.min_by(|one, other| one.0.total_cmp(&other.0))
+    }
+
+    /// The smallest ring that frames of this width can have, in samples.
+    fn shortest_ring(&self) -> usize {
+        self.geometry().width().next_power_of_two()
     }
 
     fn no_room(&self, entries: usize, shape: GridShape) -> GridRoomError {

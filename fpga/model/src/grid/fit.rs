@@ -134,8 +134,9 @@ impl Fit<'_> {
 }
 
 /// The table of shape `shape` that takes the outputs of `lattice` from nearest to the right places: out of the closed form and
-/// every round's fit, as integers, the one with the least largest error in the inner part.
-pub(super) fn fitted(camera: &Camera, shape: GridShape, lattice: &Lattice) -> TableSet {
+/// every round's fit, as integers, the one with the least largest error in the inner part that a ring of `ring` samples can serve,
+/// and that error.
+pub(super) fn fitted(camera: &Camera, shape: GridShape, lattice: &Lattice, ring: usize) -> (f64, TableSet) {
     let closed = Spline::of_camera(camera, shape);
     let table = closed.table(camera);
     let weight = |&(_, part): &(f64, Part)| match part {
@@ -145,15 +146,15 @@ pub(super) fn fitted(camera: &Camera, shape: GridShape, lattice: &Lattice) -> Ta
     };
     let weights = lattice.wanted.iter().map(weight).collect();
     let mut fit = Fit { lattice, shape, spline: closed, weights, held: BTreeSet::new() };
-    let mut best = (lattice.error(&table), table);
+    let mut best = (lattice.error(&table, ring), table);
     for _ in 0..ROUNDS {
         fit.solve();
         let table = fit.spline.fitted_table(camera);
-        let found = lattice.error(&table);
+        let found = lattice.error(&table, ring);
         if found < best.0 {
             best = (found, table);
         }
         fit.weigh();
     }
-    best.1
+    best
 }

@@ -1,7 +1,5 @@
 //! The exact projection at a lattice of outputs, and how far tables deviate from it.
 
-use std::f64::consts::FRAC_PI_2;
-
 use super::projection::{POLE, ProjectedRow};
 use super::residual_sum::{GridResidual, ResidualSum};
 use crate::{Camera, RowValues, TableSet};
@@ -59,10 +57,9 @@ impl Lattice {
         Self { wanted: wanted.collect(), columns, rows }
     }
 
-    /// The largest error of the inner part; infinite when the smallest ring for this width cannot serve `tables`.
-    pub(super) fn error(&self, tables: &TableSet) -> f64 {
-        let shortest = tables.geometry().width().next_power_of_two();
-        if tables.check_ring(shortest).is_ok() { self.residuals(tables).inner.max } else { f64::INFINITY }
+    /// The largest error of the inner part; infinite when a ring of `ring` samples cannot serve `tables`.
+    pub(super) fn error(&self, tables: &TableSet, ring: usize) -> f64 {
+        if tables.check_ring(ring).is_ok() { self.residuals(tables).inner.max } else { f64::INFINITY }
     }
 
     /// The errors that `tables` leave.
@@ -113,7 +110,7 @@ fn part(camera: &Camera, source: f64, row: usize) -> Part {
 
 /// The distance of row `row` from the axis, relative to the height of the circle of 180 degrees.
 pub(crate) fn height_in_circle(camera: &Camera, row: usize) -> f64 {
-    (row as f64 - camera.centre().1).abs() / camera.lens().lowest_row(FRAC_PI_2)
+    (row as f64 - camera.centre().1).abs() / camera.hemisphere_height()
 }
 
 /// Whether a source with cos θ = `ahead`, in a row at the [`height_in_circle`] `height`, is inner.

@@ -115,6 +115,18 @@ fn the_best_grid_has_the_least_error_that_the_entries_allow() {
     }
 }
 
+/// With the axis in a corner, only coarse grids need no more than 256 samples of 256 columns, and they are wrong by 17 columns.
+#[test]
+fn a_grid_that_is_much_nearer_may_need_a_longer_ring() {
+    let lens = Equidistant::from_radius(170.0).unwrap();
+    let geometry = Geometry::centred(256, 192, BitDepth::Eight).unwrap();
+    let camera = Camera::new(geometry, lens.into(), (0.0, 0.0), 180.0).unwrap();
+    let best = camera.best_grid(2048).unwrap();
+    assert!(best.check_ring(256).is_err() && best.check_ring(512).is_ok());
+    let found = residuals(&camera, &best, 1).inner.max;
+    assert!(found < 0.2, "{found}");
+}
+
 #[test]
 fn too_few_entries_are_refused_with_what_fits() {
     let camera = paper((1920, 1080), 1.0);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use halfrow_model::{GridShape, TableError};
+use halfrow_model::{GridShape, LONGEST_RING};
 use serde_json::{Map, Value, json};
 
 use super::{Context, Failure, print};
@@ -15,7 +15,8 @@ use crate::exit::Exit;
 use crate::files::prepare_files;
 use halfrow::call::Files;
 use halfrow::frames::{self, HeatMap};
-use halfrow::optics::{LONGEST_RING, Optics, OpticsError, TablesBy};
+use halfrow::lenses::LensContentError;
+use halfrow::optics::{Optics, OpticsError, TablesBy};
 use halfrow::words::{count, grouped, verb};
 use halfrow_lab::{Amounts, Residuals};
 
@@ -76,7 +77,7 @@ struct Figures<'a> {
     /// Why there is no grid, if so.
     no_grid: Option<OpticsError>,
     /// Why a board would not take the requested tables, if so.
-    illegal: Option<TableError>,
+    illegal: Option<String>,
 }
 
 impl<'a> Figures<'a> {
@@ -96,7 +97,10 @@ impl<'a> Figures<'a> {
             };
             if by == optics.by {
                 optics.check_circle(&tables)?;
-                illegal = tables.check_ring(LONGEST_RING).err();
+                illegal = tables.check_ring(LONGEST_RING).err().map(|error| match optics.file {
+                    Some(_) => LensContentError::from(error).to_string(),
+                    None => error.to_string(),
+                });
             }
             let residuals = Residuals::of(&optics.camera, &tables);
             all.push(TableResiduals { by, shape: tables.shape(), residuals });
@@ -197,7 +201,7 @@ impl<'a> Figures<'a> {
             "rows": self.optics.by.name(),
             "grid": shape.map(|shape| json!({ "v": shape.v(), "k": shape.k(), "entries": shape.entries(geometry) })),
             "rows_outside_circle": camera.rows_outside_circle(),
-            "illegal": self.illegal.as_ref().map(ToString::to_string),
+            "illegal": self.illegal,
             "samples": first.map(|residuals| residuals.samples),
             "residual_px": {
                 "horizontal": of_each(|left| json!(left.circle.amounts)),
