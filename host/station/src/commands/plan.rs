@@ -9,7 +9,7 @@ use super::beginning::SettingsFile;
 use super::{Failure, print, publish};
 use crate::exit::Exit;
 use crate::plan::limits::{Limit, Measurement};
-use crate::plan::{Act, Again, Bad, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step};
+use crate::plan::{Again, Bad, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step, StepKind};
 
 /// Look at plans, and have the plant publish them
 #[derive(Debug, Args)]
@@ -108,10 +108,10 @@ fn variant(name: &str, selected: &Selected) -> String {
 }
 
 fn told(step: &Step) -> String {
-    let what = match &step.act {
-        Act::Identity => "the board is asked who it is".to_owned(),
-        Act::Link { each } => format!("the link is tested in parts of {} s", each.as_secs_f64()),
-        Act::Verify(judging) => {
+    let what = match &step.kind {
+        StepKind::Identity => "the board is asked who it is".to_owned(),
+        StepKind::Link { each } => format!("the link is tested in parts of {} s", each.as_secs_f64()),
+        StepKind::Verify(judging) => {
             let names: Vec<_> = judging.frames.iter().map(halfrow::FrameSource::name).collect();
             let seed = match judging.seed {
                 Seed::Run => "of the run".to_owned(),

@@ -12,7 +12,7 @@ use super::acts::{RunContext, Try};
 use super::progress::ProgressMessages;
 use super::{Control, Job, Message, Ruling};
 use crate::clock;
-use crate::plan::{Act, Plan, Step};
+use crate::plan::{Plan, Step, StepKind};
 use crate::record::{BoardSeen, StepOutcome, StepRecord};
 use crate::said::{Said, Saying};
 
@@ -141,7 +141,7 @@ fn may_repeat(step: &Step, record: &StepRecord, first: Option<&BoardSeen>) -> bo
     // A board that resets while it is judged may be at fault; and only its own number proves that the board which comes back
     // is the same one.
     let may_go_on =
-        || !matches!(step.act, Act::Verify(_)) && first.is_some_and(|board| board.device.is_some());
+        || !matches!(step.kind, StepKind::Verify(_)) && first.is_some_and(|board| board.device.is_some());
     record.cause.is_retryable() && (!is_lost || may_go_on())
 }
 
@@ -154,10 +154,10 @@ fn tried(
 ) -> (StepRecord, bool) {
     let started_ms = clock::now_ms();
     let within = step.timeout;
-    let came = match &step.act {
-        Act::Identity => context.identity(within),
-        Act::Link { each } => context.link(*each, within),
-        Act::Verify(judging) => {
+    let came = match &step.kind {
+        StepKind::Identity => context.identity(within),
+        StepKind::Link { each } => context.link(*each, within),
+        StepKind::Verify(judging) => {
             context.verify(judging, (within, (seq, attempt)), &ProgressMessages::by(tell))
         }
     };
@@ -177,7 +177,7 @@ fn tried(
         seq,
         attempt,
         name: step.name.clone(),
-        kind: step.act.name().to_owned(),
+        kind: step.kind.name().to_owned(),
         outcome,
         cause,
         exit_code: exit.code(),

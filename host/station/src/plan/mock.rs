@@ -4,7 +4,7 @@
 //! cable or the lane's board.
 
 use super::serial::RESERVED;
-use super::{Act, Selected};
+use super::{Selected, StepKind};
 
 /// What stands for it in a plan, and the barcode that has a lane judge it.
 pub(crate) const BARCODE: &str = "HR:MOCK";
@@ -49,9 +49,9 @@ pub fn serial(lane: &str) -> String {
 /// The target string of a mock board with a fault drawn by `seed`, which steps of `selected` can find.
 #[must_use]
 pub fn target(seed: u64, selected: &Selected) -> String {
-    let rows = selected.steps.iter().filter_map(|step| match &step.act {
-        Act::Verify(judging) => Some(judging.chosen.tables.geometry().height() as u64),
-        Act::Identity | Act::Link { .. } => None,
+    let rows = selected.steps.iter().filter_map(|step| match &step.kind {
+        StepKind::Verify(judging) => Some(judging.chosen.tables.geometry().height() as u64),
+        StepKind::Identity | StepKind::Link { .. } => None,
     });
     let mut drawn = Drawn(seed);
     let rows = rows.min().unwrap_or(1);

@@ -111,7 +111,7 @@ pub struct Step {
     /// Its name.
     pub name: String,
     /// What it does.
-    pub act: Act,
+    pub kind: StepKind,
     /// How often it is tried again when the link or the station was in the way, and nothing speaks against the board.
     pub retries: u32,
     /// The longest that one try may take.
@@ -120,7 +120,7 @@ pub struct Step {
 
 /// What a step does.
 #[derive(Clone, Debug)]
-pub enum Act {
+pub enum StepKind {
     /// Asks the board who it is. Every run begins with it.
     Identity,
     /// Tests the link.
@@ -132,7 +132,7 @@ pub enum Act {
     Verify(Box<Judging>),
 }
 
-impl Act {
+impl StepKind {
     /// Its name: stable, lower case.
     #[must_use]
     pub const fn name(&self) -> &'static str {

@@ -14,7 +14,7 @@ use super::text::{
     BoardText, LimitText, LimitsText, PlanText, SeedText, SerialText, ShiftText, StepKindText, StepText,
     TablesText,
 };
-use super::{Act, Bad, Judging, Plan, Production, SCHEMA, Seed, Selected, Shift, Step};
+use super::{Bad, Judging, Plan, Production, SCHEMA, Seed, Selected, Shift, Step, StepKind};
 use crate::input_error::Fault;
 
 /// Where all keys are listed.
@@ -184,7 +184,8 @@ fn selected(
         let what = "no step judges the board";
         return Err(Fault::wrong(first.kind.span().start, what, "add a [[step]] with kind = \"verify\""));
     }
-    let identity = Step { name: "identity".to_owned(), act: Act::Identity, retries: 0, timeout: TIMEOUT };
+    let identity =
+        Step { name: "identity".to_owned(), kind: StepKind::Identity, retries: 0, timeout: TIMEOUT };
     let mut steps = vec![identity];
     for text in &plan.step {
         let step = step(text, tables, files)?;
@@ -201,17 +202,17 @@ fn selected(
 }
 
 fn step(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<Step, Fault> {
-    let (act, name) = match text.kind.get_ref() {
+    let (kind, name) = match text.kind.get_ref() {
         StepKindText::Link => (link(text)?, "link"),
         StepKindText::Verify => (verify(text, tables, files)?, "verify"),
     };
     let name = text.name.as_ref().map_or_else(|| Ok(name.to_owned()), not_empty)?;
     let retries = whole(text.retries.as_ref(), 0, 0..=MOST_RETRIES)?;
     let timeout = seconds(text.timeout.as_ref(), TIMEOUT, MOST_SECONDS)?;
-    Ok(Step { name, act, retries, timeout })
+    Ok(Step { name, kind, retries, timeout })
 }
 
-fn link(text: &StepText) -> Result<Act, Fault> {
+fn link(text: &StepText) -> Result<StepKind, Fault> {
     let foreign = [
         text.frames.as_ref().map(|key| ("frames", key.span().start)),
         text.repeat.as_ref().map(|key| ("repeat", key.span().start)),
@@ -223,10 +224,11 @@ fn link(text: &StepText) -> Result<Act, Fault> {
         let what = format!("a step `link` has no `{key}`");
         return Err(Fault::wrong(at, what, "leave it out, or write it into a step `verify`"));
     }
-    Ok(Act::Link { each: seconds(text.seconds.as_ref(), Duration::from_millis(500), MOST_LINK_SECONDS)? })
+    let each = seconds(text.seconds.as_ref(), Duration::from_millis(500), MOST_LINK_SECONDS)?;
+    Ok(StepKind::Link { each })
 }
 
-fn verify(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<Act, Fault> {
+fn verify(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<StepKind, Fault> {
     let at = text.kind.span().start;
     if let Some(seconds) = &text.seconds {
         let what = "a step `verify` takes as long as its frames do";
@@ -247,7 +249,7 @@ fn verify(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<Act
     let judging = Judging { chosen, phase, frames, repeat, at_speed, seed: seed(text.seed.as_ref())? };
     let fits = judging.plan(0).check_length();
     fits.map_err(|error| Fault::input(names.span().start, "so many frames", error))?;
-    Ok(Act::Verify(Box::new(judging)))
+    Ok(StepKind::Verify(Box::new(judging)))
 }
 
 impl Judging {
@@ -328,8 +330,8 @@ fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Lim
     }
     let is_made = match measurement.made_by {
         Maker::Run => true,
-        Maker::Link => steps.iter().any(|step| matches!(step.act, Act::Link { .. })),
-        Maker::Verify => steps.iter().any(|step| matches!(step.act, Act::Verify(_))),
+        Maker::Link => steps.iter().any(|step| matches!(step.kind, StepKind::Link { .. })),
+        Maker::Verify => steps.iter().any(|step| matches!(step.kind, StepKind::Verify(_))),
     };
     if !is_made {
         let what = format!("no step of the plan measures {}", measurement.name);

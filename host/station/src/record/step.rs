@@ -66,7 +66,7 @@ impl StepRecord {
             seq,
             attempt: 1,
             name: step.name.clone(),
-            kind: step.act.name().to_owned(),
+            kind: step.kind.name().to_owned(),
             outcome: StepOutcome::Skipped,
             cause: RunCause::None,
             exit_code: Exit::NothingJudged.code(),

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::lane::supervisor::Patience;
-use crate::plan::{Act, Selected, Step};
+use crate::plan::{Selected, Step, StepKind};
 
 /// Round trips, echoes, to the board, to the host, both ways at once: each part takes the seconds that the plan gives.
 const LINK_TEST_PARTS: u32 = 5;
@@ -16,9 +16,9 @@ pub(super) fn of(silence: Duration, selected: &Selected) -> Patience {
 
 /// How long the longest link test is silent when all is well.
 fn longest_link_test(selected: &Selected) -> Duration {
-    let parts = |step: &Step| match step.act {
-        Act::Link { each } => each.saturating_mul(LINK_TEST_PARTS),
-        Act::Identity | Act::Verify(_) => Duration::ZERO,
+    let parts = |step: &Step| match step.kind {
+        StepKind::Link { each } => each.saturating_mul(LINK_TEST_PARTS),
+        StepKind::Identity | StepKind::Verify(_) => Duration::ZERO,
     };
     selected.steps.iter().map(parts).max().unwrap_or_default()
 }
@@ -37,18 +37,19 @@ mod tests {
 
     #[test]
     fn a_lane_may_be_silent_for_all_parts_of_its_longest_link_test() {
-        let step = |seconds, retries, act| Step {
+        let step = |seconds, retries, kind| Step {
             name: "a step".to_owned(),
             timeout: Duration::from_secs(seconds),
             retries,
-            act,
+            kind,
         };
-        let link = |seconds| Act::Link { each: Duration::from_secs(seconds) };
+        let link = |seconds| StepKind::Link { each: Duration::from_secs(seconds) };
         let patience = |steps| of(Duration::from_secs(5), &Selected { steps, limits: Vec::new() });
-        let tested = patience(vec![step(1, 0, Act::Identity), step(20, 2, link(3)), step(30, 0, link(2))]);
+        let tested =
+            patience(vec![step(1, 0, StepKind::Identity), step(20, 2, link(3)), step(30, 0, link(2))]);
         assert_eq!(tested.silence, Duration::from_secs(5 + 5 * 3));
         assert_eq!(tested.whole, Duration::from_secs(1 + 3 * 20 + 30 + 30));
         assert_eq!(tested.tries, 1 + 3 + 1);
-        assert_eq!(patience(vec![step(1, 0, Act::Identity)]).silence, Duration::from_secs(5));
+        assert_eq!(patience(vec![step(1, 0, StepKind::Identity)]).silence, Duration::from_secs(5));
     }
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use halfrow::run::AtSpeed;
 use halfrow_station::plan::limits::{Blame, MEASUREMENTS, Measurement};
-use halfrow_station::plan::{Act, JSON_SCHEMA, Plan, Seed};
+use halfrow_station::plan::{JSON_SCHEMA, Plan, Seed, StepKind};
 use serde_json::Value;
 
 use crate::common::{PLAN, program};
@@ -109,9 +109,9 @@ fn a_plan_says_what_is_done_with_each_variant() {
     };
     assert_eq!(latency(&of_narrow.limits), (Some(1004.0), Blame::Board));
     assert_eq!(latency(&of_wide.limits), (Some(1010.0), Blame::Board));
-    let judging = |selected: &halfrow_station::plan::Selected, step: usize| match &selected.steps[step].act {
-        Act::Verify(judging) => judging.clone(),
-        act => panic!("{}", act.name()),
+    let judging = |selected: &halfrow_station::plan::Selected, step: usize| match &selected.steps[step].kind {
+        StepKind::Verify(judging) => judging.clone(),
+        kind => panic!("{}", kind.name()),
     };
     assert_ne!(judging(of_narrow, 2).chosen.tables, judging(of_wide, 2).chosen.tables);
     assert_ne!(judging(of_narrow, 2).chosen.kernel, judging(of_narrow, 3).chosen.kernel);
@@ -135,8 +135,8 @@ fn what_differs_from_what_holds_without_it_is_what_the_plan_says() {
     let text = WHOLE.replace("seconds = 0.5", "seconds = 0.25").replace("at_speed = 1.5", "at_speed = 0.0");
     let plan = load(&text.replace("blames = \"station\"", "blames = \"nobody\"")).unwrap();
     let selected = plan.variant("N");
-    assert!(matches!(selected.steps[1].act, Act::Link { each } if each == Duration::from_millis(250)));
-    let Act::Verify(judging) = &selected.steps[2].act else { panic!("{selected:?}") };
+    assert!(matches!(selected.steps[1].kind, StepKind::Link { each } if each == Duration::from_millis(250)));
+    let StepKind::Verify(judging) = &selected.steps[2].kind else { panic!("{selected:?}") };
     assert_eq!(judging.plan(0).at_speed, AtSpeed::Off, "no frames of the board's own");
     let limit = selected.limits.iter().find(|limit| limit.measurement.name == "link.together").unwrap();
     assert_eq!(limit.blames, Blame::Nobody);

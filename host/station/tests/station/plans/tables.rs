@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use halfrow_station::plan::{Act, Plan};
+use halfrow_station::plan::{Plan, StepKind};
 
 use super::{WHOLE, load};
 use crate::common::program;
@@ -21,7 +21,7 @@ fn tables_of_a_step_stand_in_the_place_of_the_plan_s_key_by_key() {
     let tables = "radius = 20.0\nwidth = 64\nheight = 16\nbits = 10\nphase = \"rggb\"\nrows = \"equation-9\"\nkernel = \"hermite\"";
     let chosen = |text: &str, step: usize| {
         let plan = load(text).unwrap();
-        let Act::Verify(judging) = &plan.variant("").steps[step].act else { panic!("{step}") };
+        let StepKind::Verify(judging) = &plan.variant("").steps[step].kind else { panic!("{step}") };
         let chosen = &judging.chosen;
         (chosen.tables.clone(), chosen.kernel.clone(), judging.phase)
     };
@@ -55,7 +55,7 @@ fn a_picture_in_colour_is_seen_through_the_phase_of_the_plan() {
     let first = |phase: &str| {
         let text = WHOLE.replace("\"rggb\"", &format!("\"{phase}\"")).replace("chart.pgm", "colour.png");
         let plan = Plan::parse(&folder.path().join("plan.toml"), text).unwrap();
-        let Act::Verify(judging) = &plan.variant("N").steps[2].act else { panic!("{phase}") };
+        let StepKind::Verify(judging) = &plan.variant("N").steps[2].kind else { panic!("{phase}") };
         let halfrow::FrameSource::File { frame, .. } = &judging.frames[1] else { panic!("{phase}") };
         frame.row(0)[..2].to_vec()
     };
