@@ -93,11 +93,8 @@ impl Try {
             StepOutcome::Error | StepOutcome::Skipped => false,
         };
         let Some((cause, said)) = worst.filter(|(cause, _)| is_worse(cause)) else { return self };
-        (self.outcome, self.exit) = match cause {
-            RunCause::Board => (StepOutcome::Failed, Exit::Fail),
-            RunCause::Refused => (StepOutcome::Error, Exit::Refused),
-            _ => (StepOutcome::Error, Exit::Error),
-        };
+        self.outcome = if *cause == RunCause::Board { StepOutcome::Failed } else { StepOutcome::Error };
+        self.exit = cause.exit();
         // What a step says to do about its own finding is no advice about another.
         let remedy = said.remedy().filter(|_| *cause != RunCause::Board).map(str::to_owned);
         (self.cause, self.finding, self.remedy) = (*cause, said.clone(), remedy);

@@ -60,7 +60,7 @@ impl Conclusion {
         worst.unwrap_or_else(|| Self {
             verdict: Verdict::Pass,
             cause: RunCause::None,
-            exit_code: Exit::Pass.code(),
+            exit_code: RunCause::None.exit().code(),
             headline: steps.last().map_or_else(String::new, |step| step.detail.clone()),
             remedy: None,
             finding: steps.last().and_then(|step| step.finding.clone()),
@@ -93,13 +93,13 @@ impl Conclusion {
         }
     }
 
-    /// An ERROR of this cause.
+    /// An ERROR of this cause, which is one and is not the board.
     #[must_use]
     pub fn error(cause: RunCause, why: impl Into<Said>) -> Self {
+        debug_assert!(!matches!(cause, RunCause::None | RunCause::Board));
         let why = why.into();
-        let exit = if cause == RunCause::Refused { Exit::Refused } else { Exit::Error };
         let remedy = Some(TEST_AGAIN.to_owned());
-        let (verdict, exit_code, headline) = (Verdict::Error, exit.code(), why.to_string());
+        let (verdict, exit_code, headline) = (Verdict::Error, cause.exit().code(), why.to_string());
         Self { verdict, cause, exit_code, headline, remedy, finding: Some(why) }
     }
 
@@ -132,7 +132,7 @@ impl Conclusion {
         let (headline, finding) = (measured.sentence(), measured.said());
         Some(match cause {
             RunCause::Board => {
-                let (verdict, exit_code) = (Verdict::Fail, Exit::Fail.code());
+                let (verdict, exit_code) = (Verdict::Fail, cause.exit().code());
                 Self { verdict, cause, exit_code, headline, remedy: None, finding: Some(finding) }
             }
             cause => {
@@ -140,6 +140,18 @@ impl Conclusion {
                 Self { remedy, ..Self::error(cause, finding) }
             }
         })
+    }
+}
+
+impl RunCause {
+    /// The exit code of a result that it caused, unless the judge or who stopped the run gives one.
+    pub(crate) const fn exit(self) -> Exit {
+        match self {
+            Self::None => Exit::Pass,
+            Self::Board => Exit::Fail,
+            Self::Refused => Exit::Refused,
+            Self::Link | Self::Station | Self::Operator | Self::Crash => Exit::Error,
+        }
     }
 }
 
