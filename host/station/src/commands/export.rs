@@ -102,12 +102,12 @@ fn each(
         let page = page(of, filter, after.as_ref(), MOST)?;
         for run in &page.runs {
             let Some(hash) = &run.record_sha256 else { continue };
-            match export::record(of, hash) {
+            match of.record(hash) {
                 Ok((record, bytes)) => {
                     write(&run.id, record, bytes)?;
                     exported.written += 1;
                 }
-                Err(ExportError::Store(error)) if error.is_of_record() => {
+                Err(error) if error.is_of_record() => {
                     tracing::warn!("the run {} is left out: {}", run.id, Said::of(&error));
                     exported.lost.push(run.id.clone());
                 }

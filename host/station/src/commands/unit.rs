@@ -8,7 +8,6 @@ use super::Failure;
 use super::history::verdict;
 use super::looking::{Results, either, time};
 use crate::exit::Exit;
-use crate::export;
 use crate::history::mismatch::{Bound, Mismatch};
 use crate::history::unit::{Unit, UnitRun, units};
 use crate::record::in_one_line;
@@ -72,7 +71,7 @@ fn mismatch(one: &Mismatch) -> String {
 fn not_exercised(run: &UnitRun, of: &Snapshot) -> Vec<String> {
     let line = &run.line;
     let hash = line.record_sha256.as_ref().filter(|_| line.verdict == Some(Verdict::Pass));
-    let record = hash.and_then(|hash| export::record(of, hash).ok());
+    let record = hash.and_then(|hash| of.record(hash).ok());
     let parts = record.as_ref().map(|(record, _)| record.not_exercised()).unwrap_or_default();
     parts.iter().map(in_one_line).collect()
 }

@@ -77,24 +77,12 @@ pub enum ExportError {
     Write(#[source] io::Error),
 }
 
-/// The record with this hash, and its bytes.
-///
-/// # Errors
-/// [`ExportError::Store`] when it is not there, or not as it was written.
-pub fn record(of: &Snapshot, hash: &str) -> Result<(Record, Vec<u8>), ExportError> {
-    let read = || -> Result<_, StoreError> {
-        let bytes = of.record(hash)?;
-        Ok((Record::parse(&bytes)?, bytes))
-    };
-    Ok(read()?)
-}
-
 /// The run whose record has this hash, in this format. It ends with a newline.
 ///
 /// # Errors
 /// [`ExportError`]
 pub fn run(of: &Snapshot, hash: &str, format: Format) -> Result<Vec<u8>, ExportError> {
-    let (record, bytes) = record(of, hash)?;
+    let (record, bytes) = of.record(hash)?;
     written(&record, bytes, format)
 }
 

@@ -106,11 +106,16 @@ impl Snapshot {
         self.read("to tell its version", |reader| reader.one(migrations::NEWEST, &[], |row| row.get(0)))
     }
 
-    /// The bytes of the record of this hash.
+    /// The record with this hash, and its bytes.
     ///
     /// # Errors
     /// [`StoreError`] when it is not there, or not as it was written.
-    pub fn record(&self, hash: &str) -> Result<Vec<u8>, StoreError> {
+    pub fn record(&self, hash: &str) -> Result<(Record, Vec<u8>), StoreError> {
+        let bytes = self.record_bytes(hash)?;
+        Ok((Record::parse(&bytes)?, bytes))
+    }
+
+    fn record_bytes(&self, hash: &str) -> Result<Vec<u8>, StoreError> {
         let shown = match &self.of {
             Of::Station(folder) => return Ok(folder.blobs().get(hash)?),
             Of::Plant(shown) => shown,

@@ -10,7 +10,7 @@ use futures_util::stream;
 
 use super::evidence::refused;
 use super::run_filter::RunFilter;
-use crate::export::{self, ExportError, Table};
+use crate::export::{ExportError, Table};
 use crate::history::runs::{self, Filter, Place};
 use crate::said::Said;
 use crate::store::{Snapshot, StoreError};
@@ -85,7 +85,8 @@ async fn piece(
 fn lines(now: &Snapshot, page: &runs::Page, is_first: bool) -> Result<Vec<u8>, ExportError> {
     let mut table = if is_first { Table::begin(Vec::new())? } else { Table::further(Vec::new()) };
     for (run, hash) in page.runs.iter().filter_map(|run| Some((&run.id, run.record_sha256.as_ref()?))) {
-        let added = export::record(now, hash).and_then(|(record, _)| table.add(&record));
+        let record = now.record(hash).map_err(ExportError::from);
+        let added = record.and_then(|(record, _)| table.add(&record));
         added
             .inspect_err(|error| tracing::error!("a table ends before the run {run}: {}", Said::of(error)))?;
     }

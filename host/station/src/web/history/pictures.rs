@@ -14,7 +14,6 @@ use serde_json::Value;
 
 use super::evidence::{attached, read};
 use super::show;
-use crate::export;
 use crate::history::runs::RunLine;
 use crate::history::unit::{self, UnitRun};
 use crate::lane::kept_frame::{KeptFrame, View};
@@ -47,7 +46,7 @@ pub(super) async fn difference(
     let look = move |now: &Snapshot| {
         let Some(UnitRun { line, attachments, .. }) = unit::run_of(now, &run)? else { return Ok(None) };
         let [found, expected] = [&found, &expected].map(|hash| read(now, &attachments, hash));
-        let record = line.record_sha256.and_then(|hash| export::record(now, &hash).ok());
+        let record = line.record_sha256.and_then(|hash| now.record(&hash).ok());
         Ok(found?.zip(expected?).map(|frames| (frames, record)))
     };
     let looked = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;

@@ -12,7 +12,6 @@ use serde_json::Value;
 use super::acts::RefusedAct;
 use super::run_filter::unit_address;
 use super::{acts, pictures, show};
-use crate::export;
 use crate::history::unit::{self as history, UnitRun};
 use crate::plan::limits::Blame;
 use crate::record::{Attachment, DeviceSeen, Measured, Record, StepRecord};
@@ -47,7 +46,7 @@ pub(super) async fn shown(
 ) -> Result<Response, Trouble> {
     let look = move |now: &Snapshot| {
         let Some(mut run) = history::run_of(now, &id)? else { return Ok(None) };
-        let read = |hash: &String| match export::record(now, hash) {
+        let read = |hash: &String| match now.record(hash) {
             Ok((record, _)) => Ok(Box::new(record)),
             Err(error) => Err(Said::of(&error)),
         };
