@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use halfrow::FrameSource;
-use halfrow::call::Input;
+use halfrow::call::{Input, check_size};
 use halfrow::frames::{Builtin, FrameFile, PictureSize, ReadOptions};
 use halfrow::model::{BitDepth, Equidistant, Geometry, Phase};
 use halfrow::optics::{self, Chosen, Optics, OpticsError, TablesBy, View};
@@ -168,20 +168,10 @@ fn of_file(
     let at = name.span().start;
     let path = files.find(name)?;
     let read = FrameFile::read(&path).and_then(|file| Ok((file.decode(how)?.frame, file)));
-    let (frame, file) =
-        read.map_err(|error| Fault::input(at, format!("the frame {}", path.display()), error))?;
+    let what = || format!("the frame {}", path.display());
+    let (frame, file) = read.map_err(|error| Fault::input(at, what(), error))?;
     files.note(name, Input::of_bytes(&path, file.bytes()))?;
-    let (size, wanted) = ((frame.width(), frame.height()), (geometry.width(), geometry.height()));
-    if size != wanted {
-        let what = format!(
-            "{} is {} x {}, and the tables are for {} x {}",
-            path.display(),
-            size.0,
-            size.1,
-            wanted.0,
-            wanted.1
-        );
-        return Err(Fault::wrong(at, what, "name a frame of the tables' size, or tables of the frame's"));
-    }
+    check_size(&path, (frame.width(), frame.height()), how, geometry)
+        .map_err(|error| Fault::input(at, what(), error))?;
     Ok(FrameSource::File { path, frame: Arc::new(frame) })
 }

@@ -217,7 +217,7 @@ const BAD: [(&str, &str, &str); 39] = [
     (
         "chart.pgm",
         "wide.pgm",
-        "plan.toml:27: wide.pgm is 128 x 16, and the tables are for 64 x 16; name a frame",
+        "plan.toml:27: the frame wide.pgm cannot be used: wide.pgm is 128 x 16, and the tables are for 64 x 16; make tables",
     ),
     ("at_speed = 1.5", "at_speed = -1.0", "plan.toml:29: -1 seconds are none that a step can take; write"),
     ("seed = \"run\"", "seed = \"rum\"", "plan.toml:30: `rum` is no seed; write \"run\""),
