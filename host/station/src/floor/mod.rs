@@ -130,6 +130,11 @@ pub enum ScanError {
 }
 
 impl ScanError {
+    /// That the station has no lane of this name, but the `known` ones.
+    pub(crate) fn no_lane<'a>(lane: &str, known: impl Iterator<Item = &'a str>) -> Self {
+        Self::NoLane { lane: lane.to_owned(), known: known.collect::<Vec<_>>().join(", ") }
+    }
+
     /// That this lane is not chosen any more.
     pub(crate) fn choice_over(lane: &str) -> Self {
         Self::ChoiceOver { lane: lane.to_owned(), seconds: CHOSEN.as_secs() }
@@ -254,10 +259,8 @@ impl Floor {
     }
 
     fn named(&self, name: &str) -> Result<usize, ScanError> {
-        self.lanes.iter().position(|lane| lane.name() == name).ok_or_else(|| {
-            let known: Vec<_> = self.lanes.iter().map(Lane::name).collect();
-            ScanError::NoLane { lane: name.to_owned(), known: known.join(", ") }
-        })
+        let found = self.lanes.iter().position(|lane| lane.name() == name);
+        found.ok_or_else(|| ScanError::no_lane(name, self.lanes.iter().map(Lane::name)))
     }
 
     fn name(&self, lane: usize) -> &str {

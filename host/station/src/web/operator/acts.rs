@@ -195,10 +195,9 @@ impl Scanned {
 fn place<'a>(app: &'a App, name: &str) -> Result<(usize, &'a str), ScanError> {
     let lanes = &app.settings().lanes;
     let found = lanes.iter().position(|lane| lane.name == name);
-    found.and_then(|place| Some((place, lanes.get(place)?.name.as_str()))).ok_or_else(|| {
-        let known: Vec<_> = lanes.iter().map(|lane| lane.name.as_str()).collect();
-        ScanError::NoLane { lane: name.to_owned(), known: known.join(", ") }
-    })
+    found
+        .and_then(|place| Some((place, lanes.get(place)?.name.as_str())))
+        .ok_or_else(|| ScanError::no_lane(name, lanes.iter().map(|lane| lane.name.as_str())))
 }
 
 /// What the audit keeps of a scan. What no plan takes may be a badge that is not known here: only its length is kept.
