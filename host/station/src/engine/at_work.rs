@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
-use super::bay::{self, Shared, StopAsked};
 use super::in_turn::{NotStarted, Shows};
 use super::known::{Known, KnownOfLane};
+use super::lane_threads::{self, Shared, StopAsked};
 use super::news::{LaneState, News};
 use super::of_lane::OfLane;
 use super::unsent;
@@ -308,7 +308,7 @@ impl AtWork {
                 return;
             }
             Effect::Begin(accepted) => self.begin(lane, accepted),
-            Effect::Recover { run } => bay::recover(&self.shared, lane, run),
+            Effect::Recover { run } => lane_threads::recover(&self.shared, lane, run),
         };
         self.threads.retain(|thread| !thread.is_finished());
         match started {
@@ -339,15 +339,14 @@ impl AtWork {
 
     /// Starts the hooks for what is shown, or for that nothing is any more, or reports why not.
     fn hook(&mut self, lane: usize, shown: Option<Shown>) {
-        let (on, unit) = (shown.as_ref().map(|shown| shown.verdict), shown.as_ref().map(bay::named));
+        let (on, unit) = (shown.as_ref().map(|shown| shown.verdict), shown.as_ref().map(lane_threads::named));
         let Some(of) = self.lanes.get_mut(lane).filter(|_| self.shared.hooks(on).next().is_some()) else {
             return;
         };
         let shared = Arc::clone(&self.shared);
         let shows = if shown.is_some() { Shows::Verdict } else { Shows::Nothing };
-        let begun = of
-            .hooks
-            .begin(shows, format!("hooks of lane {lane}"), move || bay::hook(&shared, lane, shown.as_ref()));
+        let work = move || lane_threads::hook(&shared, lane, shown.as_ref());
+        let begun = of.hooks.begin(shows, format!("hooks of lane {lane}"), work);
         let why = match begun {
             Ok(()) => return,
             Err(NotStarted::Behind(verdicts)) => Saying::HooksBehind { verdicts },
@@ -361,7 +360,7 @@ impl AtWork {
         if let Some(of) = self.lanes.get_mut(lane) {
             of.stop = Arc::clone(&stop);
         }
-        bay::begin(&self.shared, lane, accepted, stop)
+        lane_threads::begin(&self.shared, lane, accepted, stop)
     }
 
     fn stop(&mut self, lane: usize, by: Option<StoppedBy>) {

@@ -8,11 +8,11 @@
 //! ```
 
 mod at_work;
-mod bay;
 mod figures;
 mod hooks;
 mod in_turn;
 mod known;
+mod lane_threads;
 mod logged;
 mod news;
 mod of_lane;
@@ -37,8 +37,8 @@ use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{SharedStore, Store};
 use at_work::AtWork;
-use bay::Shared;
 use figures::Counter;
+use lane_threads::Shared;
 use logged::LoggedOfLanes;
 use news::Listeners;
 

@@ -1,8 +1,8 @@
 //! What the engine keeps of one lane.
 
-use super::bay::StopAsked;
 use super::in_turn::InTurn;
 use super::known::KnownOfLane;
+use super::lane_threads::StopAsked;
 use crate::presence::Presence;
 
 /// What only the engine's thread has of a lane.
