@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
-use super::in_turn::{NotStarted, Shows};
+use super::hook_queue::{NotStarted, Shows};
 use super::known::{Known, KnownOfLane};
 use super::lane_threads::{self, Shared, StopAsked};
+use super::lane_work::LaneWork;
 use super::news::{LaneState, News};
-use super::of_lane::OfLane;
 use super::unsent;
 use super::{Input, LaneEvent, LiveState, in_time};
 use crate::clock;
@@ -31,14 +31,14 @@ pub(super) struct AtWork {
     floor: Floor,
     shared: Arc<Shared>,
     live: Arc<Mutex<LiveState>>,
-    lanes: Vec<OfLane>,
+    lanes: Vec<LaneWork>,
     threads: Vec<JoinHandle<()>>,
     begun: Instant,
 }
 
 impl AtWork {
     pub(super) fn new(floor: Floor, shared: Arc<Shared>, live: Arc<Mutex<LiveState>>) -> Self {
-        let lanes = floor.lanes().iter().map(|_| OfLane::new()).collect();
+        let lanes = floor.lanes().iter().map(|_| LaneWork::new()).collect();
         Self { floor, shared, live, lanes, threads: Vec::new(), begun: Instant::now() }
     }
 

@@ -9,13 +9,13 @@
 
 mod at_work;
 mod figures;
+mod hook_queue;
 mod hooks;
-mod in_turn;
 mod known;
 mod lane_threads;
+mod lane_work;
 mod logged;
 mod news;
-mod of_lane;
 mod unsent;
 
 use std::path::PathBuf;

@@ -29,13 +29,13 @@ pub(super) enum Shows {
 
 /// The hooks of one lane.
 #[derive(Debug)]
-pub(super) struct InTurn {
+pub(super) struct HookQueue {
     threads: Vec<(JoinHandle<()>, Shows)>,
     /// Ends when the hooks that were begun last are done.
     last: Receiver<()>,
 }
 
-impl InTurn {
+impl HookQueue {
     pub(super) fn new() -> Self {
         Self { threads: Vec::new(), last: mpsc::channel().1 }
     }
@@ -59,14 +59,14 @@ impl InTurn {
         }
         // The turn is taken only once there is a thread for it.
         let (give, turn) = mpsc::channel::<(Receiver<()>, mpsc::Sender<()>)>();
-        let in_turn = move || {
+        let waiting = move || {
             let Ok((before, done)) = turn.recv() else { return };
             // Nothing is ever sent; the channel just closes.
             let _ = before.recv();
             work();
             drop(done);
         };
-        let thread = thread::Builder::new().name(name).spawn(in_turn).map_err(NotStarted::NoThread)?;
+        let thread = thread::Builder::new().name(name).spawn(waiting).map_err(NotStarted::NoThread)?;
         self.threads.push((thread, shows));
         let (done, last) = mpsc::channel();
         let _ = give.send((std::mem::replace(&mut self.last, last), done));
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn what_was_begun_first_is_done_first_and_so_much_waits_and_no_more() {
-        let (mut turns, done) = (InTurn::new(), Arc::new(Mutex::new(Vec::new())));
+        let (mut queue, done) = (HookQueue::new(), Arc::new(Mutex::new(Vec::new())));
         let (go, held) = mpsc::channel::<()>();
         let mut held = Some(held);
         for number in 0..MOST {
@@ -98,18 +98,18 @@ mod tests {
                 }
                 done.lock().unwrap().push(number);
             };
-            turns.begin(Shows::Verdict, "hooks".to_owned(), work).unwrap();
+            queue.begin(Shows::Verdict, "hooks".to_owned(), work).unwrap();
         }
-        let one_more = turns.begin(Shows::Verdict, "hooks".to_owned(), || panic!("there is no room for it"));
+        let one_more = queue.begin(Shows::Verdict, "hooks".to_owned(), || panic!("there is no room for it"));
         assert!(matches!(one_more, Err(NotStarted::Behind(MOST))), "{one_more:?}");
         for number in [MOST, MOST + 1] {
             let done = Arc::clone(&done);
             let cleared = move || done.lock().unwrap().push(number);
-            turns.begin(Shows::Nothing, "hooks".to_owned(), cleared).unwrap();
+            queue.begin(Shows::Nothing, "hooks".to_owned(), cleared).unwrap();
         }
         assert!(done.lock().unwrap().is_empty());
         drop(go);
-        turns.into_threads().for_each(|thread| thread.join().unwrap());
+        queue.into_threads().for_each(|thread| thread.join().unwrap());
         assert_eq!(
             *done.lock().unwrap(),
             (0..=MOST).collect::<Vec<_>>(),

@@ -1,12 +1,12 @@
 //! What the engine keeps of one lane.
 
-use super::in_turn::InTurn;
+use super::hook_queue::HookQueue;
 use super::known::KnownOfLane;
 use super::lane_threads::StopAsked;
 use crate::presence::Presence;
 
 /// What only the engine's thread has of a lane.
-pub(super) struct OfLane {
+pub(super) struct LaneWork {
     pub(super) presence: Presence,
     pub(super) stop: StopAsked,
     /// The unit that passed already and that somebody was asked to scan once more.
@@ -15,10 +15,10 @@ pub(super) struct OfLane {
     pub(super) known: KnownOfLane,
     /// The run that there was no thread to save.
     pub(super) unrecovered: Option<String>,
-    pub(super) hooks: InTurn,
+    pub(super) hooks: HookQueue,
 }
 
-impl OfLane {
+impl LaneWork {
     /// A lane that nothing has happened to yet.
     pub(super) fn new() -> Self {
         Self {
@@ -27,7 +27,7 @@ impl OfLane {
             asked: None,
             known: KnownOfLane::NOTHING,
             unrecovered: None,
-            hooks: InTurn::new(),
+            hooks: HookQueue::new(),
         }
     }
 }
