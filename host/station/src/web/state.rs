@@ -45,13 +45,13 @@ struct Parts {
 /// The source of what is shown.
 #[derive(Debug)]
 enum Source {
-    Station(Floor),
+    Station(Lanes),
     Plant(PlantPool),
 }
 
 /// The lanes of a station, at work.
 #[derive(Debug)]
-pub(super) struct Floor {
+pub(super) struct Lanes {
     pub(super) engine: Arc<Engine>,
     pub(super) live: Arc<Live>,
     /// Serial numbers that a visitor of a demonstration may type.
@@ -73,7 +73,7 @@ impl App {
         let live = Live::start(&engine)?;
         let (plans, mark) = (named(&settings), mark(&settings));
         let (source, turns) =
-            (Source::Station(Floor { engine, live, hints }), Turns::new(Tally::new(true, 0)));
+            (Source::Station(Lanes { engine, live, hints }), Turns::new(Tally::new(true, 0)));
         Ok(Self(Arc::new(Parts { settings, access, plans, mark, turns, source })))
     }
 
@@ -94,9 +94,9 @@ impl App {
     ///
     /// # Errors
     /// [`Trouble`] when it has none: a plant.
-    pub(super) fn floor(&self, visit: &Visit) -> Result<&Floor, Trouble> {
+    pub(super) fn lanes(&self, visit: &Visit) -> Result<&Lanes, Trouble> {
         match &self.0.source {
-            Source::Station(floor) => Ok(floor),
+            Source::Station(lanes) => Ok(lanes),
             Source::Plant(_) => Err(Trouble::missing(visit)),
         }
     }
@@ -164,8 +164,8 @@ impl App {
             }
         };
         entered.map_err(|error| {
-            if let Ok(floor) = self.floor(visit) {
-                floor.engine.refused_by_store();
+            if let Ok(lanes) = self.lanes(visit) {
+                lanes.engine.refused_by_store();
             }
             Trouble::store(visit, &error)
         })
@@ -213,7 +213,7 @@ impl App {
         visit: &Visit,
         change: impl FnOnce(&mut Store) -> T + Send + 'static,
     ) -> Result<T, Trouble> {
-        let store = self.floor(visit)?.engine.store();
+        let store = self.lanes(visit)?.engine.store();
         self.blocking(visit, move || store.with(change)).await
     }
 

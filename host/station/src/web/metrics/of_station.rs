@@ -91,7 +91,7 @@ type StoreFigures = (BTreeMap<Cell, Count>, Vec<Unsent>);
 
 /// Writes all figures. If the store cannot be read they say so, and still have what lanes do.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
-    let engine = &app.floor(visit)?.engine;
+    let engine = &app.lanes(visit)?.engine;
     let kept: Option<StoreFigures> =
         turns::counted(app, visit, |now, tally| Ok((tally.counts(now)?, now.unsent()?))).await;
     text.of(&STATION).put(&[("station", app.station())], 1_u64);

@@ -21,7 +21,7 @@ use crate::web::access::Claimant;
 use crate::web::live::Became;
 use crate::web::login::{Peer, identified, logged_in};
 use crate::web::routes::Who;
-use crate::web::state::{App, Floor};
+use crate::web::state::{App, Lanes};
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
@@ -85,7 +85,7 @@ pub(super) async fn scan(
     if !visit.may(Who::Operator) {
         return Err(Trouble::barred(&visit));
     }
-    let until = match app.floor(&visit)?.live.until(&scanned.beat) {
+    let until = match app.lanes(&visit)?.live.until(&scanned.beat) {
         Ok(until) => until,
         // The page forgets its lane, too: what came too late may be the barcode of another one.
         Err(late) => return Ok(json(&scanned.answer(None, Err(told(&visit, &late)), None))),
@@ -219,7 +219,7 @@ async fn asked(
     (act, subject, detail): (&'static str, &str, String),
     ask: impl FnOnce(&Engine, u64),
 ) -> Result<Became, Trouble> {
-    let Floor { engine, live, .. } = app.floor(visit)?;
+    let Lanes { engine, live, .. } = app.lanes(visit)?;
     let entered = app.audit(visit, act, subject, &detail);
     let ask = || {
         let (number, became) = live.ask();
@@ -263,7 +263,7 @@ async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
     let (place, name) = place(&app, &lane)
         .map_err(|error| Trouble::telling(&visit, StatusCode::NOT_FOUND, &Said::of(&error)))?;
     let late = |error| Trouble::new(&visit, StatusCode::CONFLICT, told(&visit, &error));
-    let until = app.floor(&visit)?.live.until(&pressed.beat).map_err(late)?;
+    let until = app.lanes(&visit)?.live.until(&pressed.beat).map_err(late)?;
     let ask = |engine: &Engine, number| engine.act(number, place, act, visit.name(), until);
     let became = asked(&app, &visit, ("lane", name, act.barcode()), ask).await?;
     match (visit.is_script, became.is_taken) {

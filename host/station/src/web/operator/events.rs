@@ -24,7 +24,7 @@ const UNBUFFERED: HeaderName = HeaderName::from_static("x-accel-buffering");
 
 /// Everything as it is, then what changes.
 pub(super) async fn events(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let (now, told) = app.floor(&visit)?.live.follow();
+    let (now, told) = app.lanes(&visit)?.live.follow();
     let first = snapshot(app.mark(), &visit, &now);
     let news = stream::unfold((Some(first), Follower { app, visit, told }), |(first, of)| next(first, of));
     let headers = [(CONTENT_TYPE, "text/event-stream"), (CACHE_CONTROL, "no-store"), (UNBUFFERED, "no")];
@@ -51,7 +51,7 @@ async fn next(
             if matches!(told.what, EventKind::Beat(_)) && !of.app.access().is_open() {
                 of.app.user(&of.visit, Some(of.visit.session.clone()), false).await.ok()?.ok()??;
             }
-            news(&of.app.floor(&of.visit).ok()?.live, &of.visit, &told)
+            news(&of.app.lanes(&of.visit).ok()?.live, &of.visit, &told)
         }
     };
     Some((Ok(text), (None, of)))

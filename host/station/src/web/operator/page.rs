@@ -15,7 +15,7 @@ use crate::store::{SINK_OF_PLANT, Snapshot};
 use crate::web::layout::{Here, Page};
 use crate::web::live::Now;
 use crate::web::routes::Who;
-use crate::web::state::{App, Floor};
+use crate::web::state::{App, Lanes};
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
@@ -32,7 +32,7 @@ pub(super) async fn answered(app: App, visit: Visit, answer: ScanReply) -> Resul
 }
 
 async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Response, Trouble> {
-    let Floor { live, hints, .. } = app.floor(&visit)?;
+    let Lanes { live, hints, .. } = app.lanes(&visit)?;
     let (now, today) = (live.now(), counted(&app, &visit).await?);
     let head = html! {
         link rel="stylesheet" href="/assets/operator.css";
@@ -60,7 +60,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Resp
 
 /// The lanes alone, which are loaded anew without a script.
 pub(super) async fn still(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let (now, today) = (app.floor(&visit)?.live.now(), counted(&app, &visit).await?);
+    let (now, today) = (app.lanes(&visit)?.live.now(), counted(&app, &visit).await?);
     let head = html! {
         meta http-equiv="refresh" content=(ANEW);
         base target="_top";
