@@ -7,7 +7,7 @@ use halfrow_program::number::counted;
 use super::Failure;
 use super::looking::{Filtered, Results, either, table, time};
 use crate::exit::Exit;
-use crate::history::runs::{MOST, Page, Place, RunLine, page};
+use crate::history::runs::{Cursor, MOST, Page, RunLine, page};
 
 /// The most characters of a result that are shown.
 const MOST_RESULT: usize = 80;
@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     limit: u32,
     /// Continue after this place, with which the page before ended
     #[arg(long, value_name = "PLACE")]
-    after: Option<Place>,
+    after: Option<Cursor>,
     /// Print JSON
     #[arg(long)]
     json: bool,

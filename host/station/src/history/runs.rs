@@ -33,37 +33,37 @@ pub struct Filter {
 
 /// The place of a run among all runs, after which a page can begin.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct Cursor {
     /// When it began, in milliseconds since 1970, UTC.
     pub started_ms: i64,
     /// Its id.
     pub id: String,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Cursor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}.{}", self.started_ms, self.id)
     }
 }
 
-impl Serialize for Place {
+impl Serialize for Cursor {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
 }
 
-/// A text that is not a place.
+/// A text that is not a cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("this is no place among the runs; take the one that the page before ends with")]
-pub struct NoPlace;
+pub struct NoCursor;
 
-impl FromStr for Place {
-    type Err = NoPlace;
+impl FromStr for Cursor {
+    type Err = NoCursor;
 
-    fn from_str(text: &str) -> Result<Self, NoPlace> {
-        let (started, id) = text.split_once('.').ok_or(NoPlace)?;
-        let started_ms = started.parse().map_err(|_| NoPlace)?;
-        uuid::Uuid::try_parse(id).map_err(|_| NoPlace)?;
+    fn from_str(text: &str) -> Result<Self, NoCursor> {
+        let (started, id) = text.split_once('.').ok_or(NoCursor)?;
+        let started_ms = started.parse().map_err(|_| NoCursor)?;
+        uuid::Uuid::try_parse(id).map_err(|_| NoCursor)?;
         Ok(Self { started_ms, id: id.to_owned() })
     }
 }
@@ -138,8 +138,8 @@ impl RunLine {
         self.nth == 0 && self.verdict.is_some()
     }
 
-    fn place(&self) -> Place {
-        Place { started_ms: self.started_ms, id: self.id.clone() }
+    fn cursor(&self) -> Cursor {
+        Cursor { started_ms: self.started_ms, id: self.id.clone() }
     }
 }
 
@@ -148,15 +148,15 @@ impl RunLine {
 pub struct Page {
     /// The runs, the newest first.
     pub runs: Vec<RunLine>,
-    /// The place after which the next page begins; `None` on the last page.
-    pub next: Option<Place>,
+    /// The cursor after which the next page begins; `None` on the last page.
+    pub next: Option<Cursor>,
 }
 
 /// At most `limit` runs, 1 to [`MOST`], that pass `filter`, beginning with the one after `after`.
 ///
 /// # Errors
 /// [`StoreError`] when the database cannot be read.
-pub fn page(of: &Snapshot, filter: &Filter, after: Option<&Place>, limit: u32) -> Result<Page, StoreError> {
+pub fn page(of: &Snapshot, filter: &Filter, after: Option<&Cursor>, limit: u32) -> Result<Page, StoreError> {
     let limit = limit.clamp(1, MOST);
     let verdict = filter.verdict.map(|verdict| verdict.to_string());
     let mut runs = Vec::new();
@@ -173,10 +173,10 @@ pub fn page(of: &Snapshot, filter: &Filter, after: Option<&Place>, limit: u32) -
             runs.append(&mut one(of, &equal, filter.period, after, limit + 1)?);
         }
     }
-    runs.sort_unstable_by_key(|run| std::cmp::Reverse(run.place()));
+    runs.sort_unstable_by_key(|run| std::cmp::Reverse(run.cursor()));
     let has_more = runs.len() > limit as usize;
     runs.truncate(limit as usize);
-    let next = runs.last().filter(|_| has_more).map(RunLine::place);
+    let next = runs.last().filter(|_| has_more).map(RunLine::cursor);
     Ok(Page { runs, next })
 }
 
@@ -200,7 +200,7 @@ fn one(
     of: &Snapshot,
     equal: &[(&str, Option<&String>)],
     period: Period,
-    after: Option<&Place>,
+    after: Option<&Cursor>,
     limit: u32,
 ) -> Result<Vec<RunLine>, StoreError> {
     let columns: Vec<_> = equal.iter().filter(|(_, value)| value.is_some()).map(|(name, _)| *name).collect();
@@ -210,7 +210,7 @@ fn one(
     if period != Period::default() {
         values.extend([period.from_ms, period.until_ms].map(Value::from));
     }
-    if let Some(Place { started_ms, id }) = after {
+    if let Some(Cursor { started_ms, id }) = after {
         values.extend([Value::from(*started_ms), id.into()]);
     }
     of.rows("to tell its runs", &text, &values, RunLine::of)
@@ -279,11 +279,11 @@ mod tests {
     }
 
     #[test]
-    fn a_place_reads_back_and_nothing_else_is_one() {
-        let place = Place { started_ms: 7, id: "017f22e2-79b0-7cc3-98c4-dc0c0c07398f".to_owned() };
-        assert_eq!(place.to_string().parse(), Ok(place));
+    fn a_cursor_reads_back_and_nothing_else_is_one() {
+        let cursor = Cursor { started_ms: 7, id: "017f22e2-79b0-7cc3-98c4-dc0c0c07398f".to_owned() };
+        assert_eq!(cursor.to_string().parse(), Ok(cursor));
         for wrong in ["", "7", "7.", ".017f22e2-79b0-7cc3-98c4-dc0c0c07398f", "7.x' OR 1=1"] {
-            assert_eq!(wrong.parse::<Place>(), Err(NoPlace), "{wrong}");
+            assert_eq!(wrong.parse::<Cursor>(), Err(NoCursor), "{wrong}");
         }
     }
 }

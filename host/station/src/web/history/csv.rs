@@ -11,7 +11,7 @@ use futures_util::stream;
 use super::evidence::refused;
 use super::run_filter::RunFilter;
 use crate::export::{ExportError, Table};
-use crate::history::runs::{self, Filter, Place};
+use crate::history::runs::{self, Cursor, Filter};
 use crate::said::Said;
 use crate::store::{Snapshot, StoreError};
 use crate::web::fields::Fields;
@@ -32,8 +32,8 @@ struct Download {
 }
 
 enum Next {
-    Piece(Vec<u8>, Option<Place>),
-    After(Place),
+    Piece(Vec<u8>, Option<Cursor>),
+    After(Cursor),
 }
 
 /// All runs of the filter, piece by piece. A download that cannot go on breaks off, so that no part is taken for the whole.
@@ -56,7 +56,7 @@ pub(super) async fn all(
 async fn further(mut of: Download) -> Option<(io::Result<Vec<u8>>, Download)> {
     let (bytes, after) = match of.next.take()? {
         Next::Piece(bytes, after) => (bytes, after),
-        Next::After(place) => match piece(&of.app, &of.visit, &of.filter, Some(place)).await {
+        Next::After(cursor) => match piece(&of.app, &of.visit, &of.filter, Some(cursor)).await {
             Ok(piece) => piece,
             // The log says why.
             Err(_) => return Some((Err(io::Error::other("the store cannot be read")), of)),
@@ -66,13 +66,13 @@ async fn further(mut of: Download) -> Option<(io::Result<Vec<u8>>, Download)> {
     Some((Ok(bytes), of))
 }
 
-/// The lines of the runs that follow `after`, and the place after which the next piece begins. The first piece has the header.
+/// The lines of the runs that follow `after`, and the cursor after which the next piece begins. The first piece has the header.
 async fn piece(
     app: &App,
     visit: &Visit,
     filter: &Filter,
-    after: Option<Place>,
-) -> Result<(Vec<u8>, Option<Place>), Trouble> {
+    after: Option<Cursor>,
+) -> Result<(Vec<u8>, Option<Cursor>), Trouble> {
     let filter = filter.clone();
     let written = move |now: &Snapshot| -> Result<_, StoreError> {
         let page = runs::page(now, &filter, after.as_ref(), RUNS)?;

@@ -4,7 +4,7 @@ use form_urlencoded::Serializer;
 use halfrow::Verdict;
 use serde::Deserialize;
 
-use crate::history::runs::{Filter, Place};
+use crate::history::runs::{Cursor, Filter};
 use crate::history::yields::Wanted;
 use crate::history::{Period, moment};
 use crate::web::trouble::Trouble;
@@ -26,7 +26,7 @@ pub(super) struct RunFilter {
     pub(super) until: String,
     /// Plan, day, week, lane or station of a yield; part or check of failures.
     pub(super) by: String,
-    /// The place after which the page begins.
+    /// The cursor after which the page begins.
     after: String,
 }
 
@@ -84,11 +84,11 @@ impl RunFilter {
         })
     }
 
-    /// The place after which the page begins.
+    /// The cursor after which the page begins.
     ///
     /// # Errors
     /// Like [`Self::filter`].
-    pub(super) fn after(&self) -> Result<Option<Place>, Wrong> {
+    pub(super) fn after(&self) -> Result<Option<Cursor>, Wrong> {
         some(&self.after).map(|after| after.parse().map_err(|_| Wrong(after.clone()))).transpose()
     }
 
@@ -112,7 +112,7 @@ impl RunFilter {
     }
 
     /// The address at `path` with the same query, from the run after `after` on.
-    pub(super) fn address(&self, path: &str, after: Option<&Place>) -> String {
+    pub(super) fn address(&self, path: &str, after: Option<&Cursor>) -> String {
         let after = after.map(ToString::to_string).unwrap_or_default();
         let Self { serial, verdict, plan, station, lane, operator, from, until, by, after: _ } = self;
         let all = [

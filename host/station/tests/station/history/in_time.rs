@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use halfrow::Verdict;
 use halfrow_station::history::pareto::{Of, pareto};
-use halfrow_station::history::runs::{Filter, Place, page};
+use halfrow_station::history::runs::{Cursor, Filter, page};
 use halfrow_station::history::unit::units;
 use halfrow_station::history::yields::{By, Wanted, yields};
 use halfrow_station::store::Snapshot;
@@ -78,7 +78,7 @@ fn a_million_runs_are_looked_at_in_time() {
     let mut look = || {
         let filter = filter(&mut draw, made.runs);
         let started_ms = started_ms(draw.below(made.runs));
-        let after = Place { started_ms, id: id(started_ms, 0) };
+        let after = Cursor { started_ms, id: id(started_ms, 0) };
         timed(|| drop(page(&made.now(), &filter, Some(&after), 50).unwrap()))
     };
     told("page", (0..400).map(|_| look()).collect(), "wanted p95 50 ms");
