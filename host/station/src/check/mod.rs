@@ -6,6 +6,8 @@ mod fault;
 mod plant;
 mod superseded;
 
+use std::mem;
+
 use compare::compare;
 pub use fault::Fault;
 pub use plant::check_plant;
@@ -49,6 +51,7 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
         blobs: folder.blobs(),
         removed: snapshot.pruned()?,
         rebuilt: Rebuilt::new()?,
+        early: Vec::new(),
         evidence: 0,
         pruned: 0,
         unread: 0,
@@ -94,6 +97,9 @@ struct Look {
     blobs: Blobs,
     removed: Removed,
     rebuilt: Rebuilt,
+    /// Records, with their hashes, of runs that bind what still belongs to another: earlier programs let a run have what a person
+    /// freed after it had begun.
+    early: Vec<(Record, String)>,
     evidence: usize,
     pruned: usize,
     unread: usize,
@@ -118,11 +124,24 @@ impl Look {
             self.unread += usize::from(matches!(fault, Some(Fault::Evidence { .. } | Fault::Record { .. })));
             self.faults.extend(fault);
         }
+        for (record, hash) in mem::take(&mut self.early) {
+            let fault = self.add(&record, &hash).err();
+            self.faults.extend(fault);
+        }
+    }
+
+    fn add(&mut self, record: &Record, hash: &str) -> Result<(), Fault> {
+        let added = self.rebuilt.add(record, hash);
+        let run = || record.run.id.clone();
+        added.map_err(|source| Fault::Contradiction { run: run(), source: Box::new(source) })
     }
 
     fn at_rebinding(&mut self, change: &Rebinding) -> Result<(), Fault> {
         let added = self.rebuilt.add_rebinding(change);
-        added.map_err(|source| Fault::Audit { id: change.id.clone(), source: Box::new(source) })
+        added.map_err(|source| Fault::Audit { id: change.id.clone(), source: Box::new(source) })?;
+        let Self { rebuilt, early, .. } = self;
+        early.retain(|(record, hash)| rebuilt.add(record, hash).is_err());
+        Ok(())
     }
 
     fn at_open(&mut self, open: &OpenRun) -> Result<(), Fault> {
@@ -150,8 +169,11 @@ impl Look {
         if !is_as_hashed(&record.plan) {
             self.faults.push(Fault::Plan { run: owned() });
         }
-        let added = self.rebuilt.add(&record, hash);
-        added.map_err(|source| Fault::Contradiction { run: owned(), source: Box::new(source) })
+        match self.add(&record, hash) {
+            Err(_) if record.binds().is_some() => self.early.push((record, hash.to_owned())),
+            added => added?,
+        }
+        Ok(())
     }
 }
 

@@ -55,8 +55,8 @@ pub(super) struct Detail {
 }
 
 impl Store {
-    /// Whether the board that reports `device` may be judged in `run`. If so, no other run may have the device until that
-    /// run is over.
+    /// Whether the board that reports `device` may be judged in `run`, by what is bound and by what was when the run began. If
+    /// so, no other run may have the device until that run is over.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
@@ -68,8 +68,11 @@ impl Store {
         let known = self.read("to tell which device has which serial number", |from| {
             let unit = |row: &Row<'_>| Ok(Unit { product: row.get(0)?, serial: row.get(1)? });
             let unit = from.first(sql::UNIT_OF_DEVICE, values![device], unit)?;
-            let device = from.first(sql::DEVICE_OF_UNIT, values![&run.unit_id], |row| row.get(0))?;
-            Ok(Known { unit, device })
+            let bound = from.first(sql::DEVICE_OF_UNIT, values![&run.unit_id], |row| row.get(0))?;
+            match (unit, bound) {
+                (None, None) => Known::unbound_since(from, run, device),
+                (unit, device) => Ok(Known { unit, device }),
+            }
         })?;
         let admission =
             known.admits(&Unit { product: run.product.clone(), serial: run.serial.clone() }, device);
@@ -206,6 +209,18 @@ struct Known {
 }
 
 impl Known {
+    /// What a person has unbound since `run` began. Whoever rebuilds the tables enters the run before that change, and could not
+    /// bind there what still belongs to another.
+    fn unbound_since(from: &mut dyn Database, run: &RunHead, device: &str) -> Result<Self, DatabaseError> {
+        let unbound = from.first(sql::UNBOUND_SINCE, values![&run.id, device, &run.unit_id], |row| {
+            let unit = Unit { product: row.get(0)?, serial: row.get(1)? };
+            let bound: String = row.get(2)?;
+            let is_its_unit = bound == device;
+            Ok(Self { unit: is_its_unit.then_some(unit), device: (!is_its_unit).then_some(bound) })
+        })?;
+        Ok(unbound.unwrap_or_default())
+    }
+
     /// Whether the board that reports `device` may be judged as the scanned unit.
     fn admits(&self, scanned: &Unit, device: &str) -> Admission {
         let why = match (&self.unit, &self.device) {

@@ -119,6 +119,7 @@ statements! {
     pub(super) END_BINDINGS = "end-bindings.sql";
     pub(super) UNIT_OF_DEVICE = "unit-of-device.sql";
     pub(super) DEVICE_OF_UNIT = "device-of-unit.sql";
+    pub(super) UNBOUND_SINCE = "unbound-since.sql";
     pub(super) AUDIT_OF_ACT = "audit-of-act.sql";
     pub(super) WAIVERS_UNLIKE_AUDIT = "waivers-unlike-audit.sql";
     pub(super) LAST_JUDGEMENT = "last-judgement.sql";

@@ -8,6 +8,8 @@ use std::thread;
 use std::time::Duration;
 
 use halfrow::link::{self, Link};
+use halfrow_station::check::check;
+use halfrow_station::record::DeviceSeen;
 use halfrow_station::run::recover_run;
 use halfrow_station::store::{Admission, Change, RebindError, SharedStore};
 
@@ -188,6 +190,53 @@ fn a_device_that_is_being_judged_is_admitted_and_bound_nowhere_else() {
         let change = Change { serial, product: None, device, operator: "engineer", reason: &reason("x") };
         let bound = made.store.rebind(&change);
         assert!(matches!(bound, Err(RebindError::UnderTest { .. })), "{bound:?}");
+    }
+}
+
+const DEVICES: [&str; 2] = ["0000000000000011", "0000000000000022"];
+
+/// A run of CAT00001 that waits for the first device while a person binds CAT00002 to `device`, and what is said when the board
+/// comes. Only the unit `bound` had a device.
+fn bound_anew(
+    bound: (&str, &'static str),
+    device: Option<&str>,
+) -> (Made, impl FnOnce(&mut Made), Admission) {
+    let judged =
+        |serial, device| Run { device: Some((DeviceSeen::New, device)), ..Run::of(serial, End::Pass) };
+    let mut made = Made::new();
+    made.run(&Run::of("CAT00002", End::Pass));
+    made.run(&judged(bound.0, bound.1));
+    let waiting = judged("CAT00001", DEVICES[0]);
+    let (head, plan) = made.begin(&waiting);
+    let (serial, reason) = ("CAT00002", reason("labels exchanged"));
+    let change = Change { serial, product: None, device, operator: "engineer", reason: &reason };
+    made.store.rebind(&change).unwrap();
+    let admission = made.store.admit(&head, DEVICES[0]).unwrap();
+    (made, move |made: &mut Made| made.finish(&waiting, head, plan), admission)
+}
+
+/// The tables are rebuilt from runs in the order in which they began, and there the run comes before the change.
+#[test]
+fn a_run_that_waits_for_its_board_while_a_person_binds_anew_is_refused() {
+    let freed = bound_anew(("CAT00002", DEVICES[0]), None).2;
+    let taken = bound_anew(("CAT00001", DEVICES[1]), Some(DEVICES[1])).2;
+    let told = [freed, taken].map(|admission| match admission {
+        Admission::Refused { why } => why.to_string(),
+        other => panic!("{other:?}"),
+    });
+    let other = "CAT00001 is device 0000000000000022; the board in the lane is device 0000000000000011";
+    assert_eq!(told, ["this board is CAT00002; you scanned CAT00001", other]);
+}
+
+/// Earlier programs did not refuse them.
+#[test]
+fn a_folder_in_which_a_run_has_bound_what_a_person_freed_meanwhile_is_well() {
+    let freed = bound_anew(("CAT00002", DEVICES[0]), None);
+    let taken = bound_anew(("CAT00001", DEVICES[1]), Some(DEVICES[1]));
+    for (mut made, finish) in [(freed.0, freed.1), (taken.0, taken.1)] {
+        finish(&mut made);
+        let faults = check(&made.folder()).unwrap().faults;
+        assert!(faults.is_empty(), "{}", faults[0]);
     }
 }
 
