@@ -29,6 +29,19 @@ pub struct Said {
 /// The parameter, of the reason why a run broke off, that counts the samples which differed by then.
 pub(crate) const DIFFERED: &str = "differed";
 
+/// The codes of errors of the link that a board which was unplugged may leave behind, whatever leads to it.
+const ABSENT: [&str; 9] = [
+    "board-unplugged",
+    "link-closed",
+    "link-failed",
+    "link-without-board",
+    "serial-port-missing",
+    "tcp-refused",
+    "usb-board-missing",
+    "usb-no-board",
+    "usb-other-devices-only",
+];
+
 /// What to do, in full sentences and by code, about what the station says in a sentence that does not end in it.
 pub(crate) const REMEDIES: [(&str, &str); 10] = [
     ("plan-takes-hardware", "Check the lane's target."),
@@ -60,6 +73,11 @@ impl Said {
     /// Whether it, or a cause of it, is that the board no longer knew the session.
     pub(crate) fn is_of_lost_session(&self) -> bool {
         self.code == "session-lost" || self.causes.iter().any(Self::is_of_lost_session)
+    }
+
+    /// Whether it, or a cause of it, is that the connection to the board ended, or that nothing is where the board was.
+    pub(crate) fn is_of_absent_board(&self) -> bool {
+        ABSENT.contains(&self.code.as_str()) || self.causes.iter().any(Self::is_of_absent_board)
     }
 
     /// What the judge says, for people who cannot do what is done at a bench: nobody takes a board over from a lane.
@@ -301,6 +319,7 @@ pub enum Saying {
 mod tests {
     use super::*;
     use halfrow::board::BoardError;
+    use halfrow::result::codes;
 
     #[test]
     fn a_board_that_another_session_holds_is_scanned_again_and_not_taken_over() {
@@ -309,5 +328,13 @@ mod tests {
         assert_eq!(told.scan_again().as_deref(), Some("Scan the label again in 7 s."));
         let other = Said::of(&BoardError::SessionLost).at_the_station();
         assert_eq!((other.code.as_str(), other.scan_again()), ("session-lost", None), "the control");
+    }
+
+    #[test]
+    fn every_code_of_an_absent_board_is_one_of_the_judge() {
+        for code in ABSENT {
+            let mut known = codes::LISTS.into_iter().flatten().flat_map(|list| list.codes);
+            assert!(known.any(|(known, _)| *known == code), "{code}");
+        }
     }
 }

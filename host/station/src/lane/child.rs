@@ -138,11 +138,13 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
 /// Whether a step that came to this on the board that the run began with may be tried again without a person.
 fn may_repeat(step: &Step, record: &StepRecord, first: Option<&BoardSeen>) -> bool {
     let is_lost = record.finding.as_ref().is_some_and(Said::is_of_lost_session);
-    // A board that resets while it is judged may be at fault; and only its own number proves that the board which comes back
-    // is the same one.
-    let may_go_on =
-        || !matches!(step.kind, StepKind::Verify(_)) && first.is_some_and(|board| board.device.is_some());
-    record.cause.is_retryable() && (!is_lost || may_go_on())
+    // A board is exchanged by being unplugged.
+    let is_gone = record.finding.as_ref().is_some_and(Said::is_of_absent_board);
+    // Only its own number proves that the board which comes back is the same one.
+    let proves_itself = || first.is_some_and(|board| board.device.is_some());
+    // A board that resets while it is judged may be at fault.
+    let was_reset = is_lost && matches!(step.kind, StepKind::Verify(_));
+    record.cause.is_retryable() && !was_reset && (!(is_lost || is_gone) || proves_itself())
 }
 
 /// The record of a try, and whether it holds anything against the board.

@@ -141,16 +141,29 @@ fn a_board_that_loses_its_session_while_it_is_judged_is_tested_again_by_a_person
     assert_eq!((verdict.as_str(), tries.as_str()), ("ERROR", "1 error"), "{told}");
 }
 
+/// The end of what is told of a step that is not repeated because another board may be there.
+const MAY_BE_ANOTHER: &str = "the board lost its session, and may be at fault, or be another board now";
+
+fn unnumbered() -> String {
+    "mock".to_owned()
+}
+
 /// Without a number it may be another board that answers from then on.
 #[test]
 fn a_step_during_which_the_session_was_lost_is_repeated_only_with_a_board_that_proves_who_it_is() {
     let (verdict, tries, told) = came("link", (device(NUMBER), device(NUMBER)), Then::Reset);
     assert_eq!((verdict.as_str(), tries.as_str()), ("PASS", "1 error, 2 passed"), "{told}");
-    let unnumbered = || "mock".to_owned();
     let (verdict, tries, told) = came("link", (unnumbered(), unnumbered()), Then::Reset);
     assert_eq!((verdict.as_str(), tries.as_str()), ("ERROR", "1 error"), "{told}");
-    assert!(
-        told.ends_with("the board lost its session, and may be at fault, or be another board now"),
-        "{told}"
-    );
+    assert!(told.ends_with(MAY_BE_ANOTHER), "{told}");
+}
+
+/// A board is exchanged by being unplugged.
+#[test]
+fn a_step_whose_connection_ended_is_not_repeated_with_a_board_that_has_no_number() {
+    let came = ["link", "verify"].map(|kind| came(kind, (unnumbered(), unnumbered()), Then::Cut));
+    let told = came
+        .each_ref()
+        .map(|(verdict, tries, told)| (verdict.as_str(), tries.as_str(), told.ends_with(MAY_BE_ANOTHER)));
+    assert_eq!(told, [("ERROR", "1 error", true); 2], "{came:?}");
 }
