@@ -44,6 +44,23 @@ def test_a_report_that_cannot_be_kept_hides_no_failure(pytester):
     result.stdout.fnmatch_lines(["The report is not kept: *"])
 
 
+def test_a_report_that_has_lost_its_run_ends_no_session(pytester):
+    pytester.makepyfile("""
+import pickle
+
+def test_it(halfrow_board):
+    halfrow_board.verify(frames="builtin:bars", at_speed=0)
+    halfrow_board.reports[:] = pickle.loads(pickle.dumps(halfrow_board.reports))
+    assert False
+
+def test_the_next():
+    pass
+""")
+    result = pytester.runpytest_subprocess("--halfrow-report", "kept")
+    result.assert_outcomes(failed=1, passed=1)
+    result.stdout.fnmatch_lines(["The report is not kept: the frames of this report's run are not with it*"])
+
+
 def test_a_board_that_cannot_be_opened_fails_the_test_with_its_remedy(pytester):
     pytester.makepyfile(TEST)
     result = pytester.runpytest_subprocess("--halfrow-board", "serial:/dev/none", "--halfrow-report", "kept")
@@ -113,8 +130,9 @@ def test_it(halfrow_board):
     assert len(kept(pytester)) == 3
     others = [pytester.path / "kept/notes.txt", next((pytester.path / "kept").glob("*/0")).parent / "notes.txt"]
     [other.write_text("mine") for other in others]
-    run(1, *FAILING, "--collect-only")
-    assert len(kept(pytester)) == 3
+    for without_tests in ("--collect-only", "--setup-plan", "--setup-only", "--fixtures"):
+        run(1, *FAILING, without_tests)
+        assert len(kept(pytester)) == 3, without_tests
     run(1, "--halfrow-board", "mock,fault=stuck-data,bit=3", *FAILING[2:]).assert_outcomes(failed=1)
     assert [headline for headline in kept(pytester).values() if "bit 3" in headline and "bit 7" not in headline]
     assert len(kept(pytester)) == 1

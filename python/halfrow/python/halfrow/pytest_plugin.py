@@ -76,7 +76,8 @@ class _Folder:
             with (self.place / _LIST).open("a", encoding="utf-8") as kept:
                 kept.write(f"{name}\n")
             report.save(place, overwrite=True)
-        except (HalfrowError, OSError) as error:
+        # A report without its run, such as a test's copy of one, is a ValueError.
+        except (HalfrowError, OSError, ValueError) as error:
             return f"\nThe report is not kept: {error}"
         return f"\nreport: {self.named / name / str(number)}"
 
@@ -117,13 +118,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     named = config.getoption("--halfrow-report")
-    config.stash[_FOLDER] = None if named is None else _Folder(named, config.invocation_params.dir)
+    # Fixtures may be set up without a test that runs; --setup-plan also sets this option.
+    runs_none = config.getoption("collectonly") or config.getoption("setuponly", False)
+    config.stash[_FOLDER] = None if named is None or runs_none else _Folder(named, config.invocation_params.dir)
 
 
-def pytest_sessionstart(session: pytest.Session) -> None:
+# Not when the session starts: one that shows fixtures, say, runs no tests.
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop(session: pytest.Session) -> None:
     folder = session.config.stash[_FOLDER]
     # When a worker of pytest-xdist begins, others may already have kept reports.
-    if folder is None or session.config.getoption("collectonly") or hasattr(session.config, "workerinput"):
+    if folder is None or hasattr(session.config, "workerinput"):
         return
     try:
         folder.begin()
