@@ -1,5 +1,5 @@
 """What mypy --strict must accept, and what it must refuse: an unneeded `ignore` is also an error."""
-from typing import Optional, Tuple
+from typing import Hashable, Optional, Tuple
 
 import halfrow
 import numpy as np
@@ -31,3 +31,6 @@ def wrong() -> None:
     halfrow.verify(tables="lens.json")  # type: ignore[arg-type]
     halfrow.Lens(hight=3)  # type: ignore[call-arg]
     halfrow.Tables.from_lens(rows=1)  # type: ignore[arg-type]
+    of_tables: Hashable = tables  # type: ignore[assignment]
+    of_kernel: Hashable = tables.kernel  # type: ignore[assignment]
+    of_lens: Hashable = tables.lens

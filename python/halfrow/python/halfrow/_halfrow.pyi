@@ -1,5 +1,5 @@
 import os
-from typing import Any, Dict, List, Optional, Tuple, Type, Union, final
+from typing import Any, ClassVar, Dict, List, Optional, Tuple, Type, Union, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,7 @@ class Kernel:
     def write(self, path: _Name, *, overwrite: bool = False) -> None: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
 
 @final
 class Lens:
@@ -120,6 +121,7 @@ class Tables:
     def source(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
 
 @final
 class Corrector:
