@@ -42,6 +42,8 @@ def test_codes_are_those_of_the_program(tmp_path, program, opencv):
             "file-is-no-regular-one",
         ),
         (lambda: halfrow.Tables.from_lens().write(capitals), ["tables", "-o", capitals], "file-exists"),
+        (lambda: halfrow.Tables.from_lens().write("no.json/"), ["tables", "-o", "no.json/"], "file-is-no-regular-one"),
+        (lambda: halfrow.write_frame("no.pgm/", frame), [*correct, "no.pgm/"], "file-is-no-regular-one"),
         (lambda: halfrow.write_frame(other_name, frame), [*correct, other_name], "frame-extension-unknown"),
         (lambda: halfrow.Tables.read(broken), ["verify", "--tables", broken], "table-file-wrong"),
         (lambda: halfrow.Tables.read(other), ["verify", "--tables", other], "table-file-of-other-datapath"),
@@ -98,6 +100,7 @@ def test_codes_of_runs_are_those_of_the_program(tmp_path, program, monkeypatch):
         (verify(["--record", "link.rec", "--overwrite"], record="link.rec", overwrite=True), "file-is-link"),
         (verify(["--record", "folder", "--overwrite"], record="folder", overwrite=True), "file-is-no-regular-one"),
         (verify(["--record", "no/x.rec"], record="no/x.rec"), "folder-unusable"),
+        (verify(["--record", "new/"], record="new/"), "file-is-no-regular-one"),
         (verify(["--report", "no/rep"], report="no/rep"), "folder-unusable"),
         (verify(["--report", "folder"], report="folder"), "folder-is-no-report"),
         (verify(["--record", "x", "--report", "x"], record="x", report="x"), "outputs-share-a-file"),
@@ -117,6 +120,14 @@ def test_codes_of_runs_are_those_of_the_program(tmp_path, program, monkeypatch):
     ]:
         refused_as_by_the_program(program, *case, code)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["big.pgm", "folder", "link.rec", "narrow.pgm", "ok.pgm", "there.rec"]
+
+
+@pytest.mark.parametrize("call", [lambda path: halfrow.Kernel().write(path), lambda path: halfrow.verify(record=path)])
+def test_an_output_without_a_files_name_is_the_calls_fault(call):
+    for path in ("", "new/"):
+        with pytest.raises(halfrow.InputError) as raised:
+            call(path)
+        assert raised.value.code == "file-is-no-regular-one"
 
 
 def test_no_input_of_a_run_is_overwritten(tmp_path, program, monkeypatch):

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io;
+use std::os::unix::ffi::OsStrExt as _;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Component, Path, PathBuf};
 use std::time::Duration;
@@ -11,9 +12,17 @@ use super::{WriteAsideError, folder_of, under_way};
 /// Checks that a file may be written to `path` as things stand. [`check_folder`] checks its folder.
 ///
 /// # Errors
-/// [`WriteAsideError`] when it is a link or not a regular file, or exists and `overwrite` is false.
+/// [`WriteAsideError`] when it is a link or not a regular file, or its name could be only a folder's, or it exists and `overwrite`
+/// is false.
 pub fn check(path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
     let path = path.to_owned();
+    if path.as_os_str().is_empty() {
+        // As the folder that an empty path means, since a message could not show it.
+        return Err(WriteAsideError::NotAFile { path: ".".into() });
+    }
+    if names_a_folder(&path) {
+        return Err(WriteAsideError::NotAFile { path });
+    }
     let there = match fs::symlink_metadata(&path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         Err(source) => return Err(WriteAsideError::Io { path, source }),
@@ -29,6 +38,12 @@ pub fn check(path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
     } else {
         Ok(())
     }
+}
+
+/// Whether only a folder can have that name, be it there or not.
+fn names_a_folder(path: &Path) -> bool {
+    let name = path.as_os_str().as_bytes();
+    path.file_name().is_none() || name.ends_with(b"/") || name.ends_with(b"/.")
 }
 
 /// Checks that files can be made in `folder`. If it does not exist and `may_be_made`, checks that it could be made.
@@ -122,6 +137,20 @@ mod tests {
     use std::os::unix::fs::symlink;
 
     use super::*;
+
+    #[test]
+    fn a_name_that_only_a_folder_can_have_is_refused_for_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("file"), "").unwrap();
+        for name in ["new/", "new/.", "new/..", "new//", "file/"] {
+            let refused = check(&folder.path().join(name), true);
+            assert!(matches!(refused, Err(WriteAsideError::NotAFile { .. })), "{name}: {refused:?}");
+        }
+        let refused = check(Path::new(""), true).unwrap_err();
+        assert_eq!(refused.to_string(), ". is no regular file; name a file, not a folder or a device");
+        check(&folder.path().join("./new"), true).unwrap();
+        check(&folder.path().join("new."), true).unwrap();
+    }
 
     #[test]
     fn names_of_one_place_are_one_place_whether_it_is_there_or_not() {
