@@ -66,7 +66,7 @@ impl Corrector {
             Some(out) => out,
             None => PyArray2::<u16>::zeros(py, [frame.shape()[0], frame.shape()[1]], false).into_any(),
         };
-        let mut written = arrays::write(&out, "out")?;
+        let mut written = arrays::write(&out, arrays::OUT)?;
         check_size(tables, written.shape())?;
         arrays::check_apart(&frame, &written)?;
         let (samples, output) = (frame.as_slice()?, written.as_slice_mut()?);

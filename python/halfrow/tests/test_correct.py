@@ -1,5 +1,8 @@
-"""Corrected frames: the samples compared with the program, the memory with NumPy's own account of it."""
+"""Corrected frames: the samples compared with the program, the memory with NumPy's own account of it and with the system's."""
 import ctypes
+import subprocess
+import sys
+import textwrap
 import threading
 import tracemalloc
 
@@ -56,6 +59,32 @@ def test_nothing_is_copied(small):
     assert np.array_equal(made, out)
 
 
+def test_nothing_is_copied_in_rust_either():
+    """In a process of its own, whose most memory so far tells what each call adds to it."""
+    measured = """
+        import re, numpy, halfrow
+
+        # Not ru_maxrss, which a process has from the one that started it.
+        def most():
+            return 1024 * int(re.search(r"VmHWM:\\s+(\\d+) kB", open("/proc/self/status").read())[1])
+
+        def added(call):
+            before = most()
+            call()
+            return most() - before
+
+        tables = halfrow.Tables.from_lens(halfrow.Lens("equidistant:1500", width=2592, height=2048))
+        corrector = halfrow.Corrector(tables)
+        frame, out = (numpy.full((2048, 2592), value, numpy.uint16) for value in (1000, 0))
+        print(frame.nbytes, added(lambda: corrector.correct(frame, out)), added(lambda: halfrow.demosaic(frame)))
+    """
+    found = subprocess.run([sys.executable, "-c", textwrap.dedent(measured)], check=True, capture_output=True, text=True)
+    frame, corrected, demosaicked = map(int, found.stdout.split())
+    assert corrected < frame / 2
+    # The control: this copies the frame, and makes a picture.
+    assert demosaicked > frame
+
+
 def test_a_part_of_a_larger_memory_is_corrected_where_it_is(small):
     many = np.stack([noise(small, seed) for seed in range(3)])
     outs = np.zeros_like(many)
@@ -87,7 +116,10 @@ def test_other_arrays_are_refused_and_never_copied(small):
     read_only.flags.writeable = False
     refused(lambda: correct(frame, out=read_only), ValueError, "read-only")
     refused(lambda: correct(frame, out=frame), ValueError, "shares memory")
-    refused(lambda: correct(frame, out=np.zeros(frame.shape)), TypeError, "float64")
+    refused(lambda: correct(np.ma.masked_equal(frame, 0)), TypeError, "masked")
+    # Not a copy of `out`: the result would be in that alone.
+    for out in (np.zeros(frame.shape), np.asfortranarray(frame), np.ma.array(frame), frame.tolist()):
+        refused(lambda: correct(frame, out=out), (TypeError, ValueError), "give out numpy.empty(frame.shape, numpy.uint16)")  # noqa: B023
     refused(lambda: correct(frame, path="fast"), ValueError, "fast")
     # A read-only input is not refused.
     frame.flags.writeable = False
