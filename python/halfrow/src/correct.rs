@@ -29,12 +29,13 @@ impl Corrector {
     #[new]
     #[pyo3(signature = (tables, *, kernel = None, path = None))]
     fn new(
+        py: Python<'_>,
         #[pyo3(from_py_with = arguments::tables)] tables: Bound<'_, Tables>,
         #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
         path: Option<&str>,
     ) -> PyResult<Self> {
         let kernel = match kernel {
-            Some(kernel) => kernel.taken()?.kernel,
+            Some(kernel) => kernel.taken(py)?.kernel,
             None => tables.get().chosen.kernel.clone(),
         };
         let path = choices::path(path)?;
@@ -109,5 +110,5 @@ pub(crate) fn correct<'py>(
     out: Option<Bound<'py, PyAny>>,
     path: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    Corrector::new(tables, kernel, path)?.correct(py, frame, out)
+    Corrector::new(py, tables, kernel, path)?.correct(py, frame, out)
 }

@@ -34,9 +34,9 @@ pub(crate) struct Kernel {
 impl Kernel {
     #[new]
     #[pyo3(signature = (name = PathBuf::from(Interpolant::Hermite.name())))]
-    fn new(name: PathBuf) -> PyResult<Self> {
-        let (KernelFile { kernel, about }, file) =
-            optics::kernel_file(name.as_os_str()).map_err(errors::optics)?;
+    fn new(py: Python<'_>, name: PathBuf) -> PyResult<Self> {
+        let read = py.detach(|| optics::kernel_file(name.as_os_str()));
+        let (KernelFile { kernel, about }, file) = read.map_err(errors::optics)?;
         Ok(Self { kernel, about, name: name.display().to_string(), asked: Some(name), file })
     }
 
@@ -82,10 +82,10 @@ impl Kernel {
     /// Writes it to a kernel file (JSON), with the notes of the file that it was read from. An existing file is replaced only
     /// with `overwrite`.
     #[pyo3(signature = (path, *, overwrite = false))]
-    fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
+    fn write(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let file = KernelFile { kernel: self.kernel.clone(), about: self.about.clone() };
         outputs::check_files([&path], overwrite)?;
-        file.write(&path, overwrite).map_err(errors::failed)
+        py.detach(|| file.write(&path, overwrite)).map_err(errors::failed)
     }
 
     fn __repr__(&self) -> String {
@@ -106,10 +106,10 @@ pub(crate) enum KernelLike<'py> {
 
 impl KernelLike<'_> {
     /// The kernel.
-    pub(crate) fn taken(self) -> PyResult<Kernel> {
+    pub(crate) fn taken(self, py: Python<'_>) -> PyResult<Kernel> {
         match self {
             Self::Kernel(kernel) => Ok(kernel.get().clone()),
-            Self::Name(name) => Kernel::new(name),
+            Self::Name(name) => Kernel::new(py, name),
         }
     }
 }

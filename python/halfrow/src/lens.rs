@@ -42,7 +42,9 @@ impl Lens {
         #[pyo3(from_py_with = arguments::field_of_view)] field_of_view: f64,
     ) -> PyResult<Self> {
         let depth = choices::depth(bits)?;
-        Self::seen(lens, &View { width, height, depth, centre_x, centre_y, field_of_view })
+        let view = View { width, height, depth, centre_x, centre_y, field_of_view };
+        // A parameter for it would be one too many.
+        Python::attach(|py| Self::seen(py, lens, &view))
     }
 
     /// Columns of the frames.
@@ -117,7 +119,8 @@ impl Lens {
 }
 
 impl Lens {
-    pub(crate) fn seen(lens: Option<PathBuf>, view: &View) -> PyResult<Self> {
+    /// The lens, whose file is read without Python's lock: it may be a pipe that another thread of Python fills.
+    pub(crate) fn seen(py: Python<'_>, lens: Option<PathBuf>, view: &View) -> PyResult<Self> {
         let radius = lens.as_ref().and_then(|lens| lens.to_str()?.strip_prefix(EQUIDISTANT));
         let equidistant = match (&lens, radius) {
             (None, _) => Equidistant::default(),
@@ -130,8 +133,8 @@ impl Lens {
                 Equidistant::from_radius(radius).map_err(errors::input)?
             }
             (Some(path), None) => {
-                let optics = Optics::of_file(path, view, TablesBy::Fitting).map_err(errors::optics)?;
-                return Ok(Self { optics });
+                let read = py.detach(|| Optics::of_file(path, view, TablesBy::Fitting));
+                return Ok(Self { optics: read.map_err(errors::optics)? });
             }
         };
         let optics =
@@ -149,10 +152,10 @@ pub(crate) enum LensLike<'py> {
 
 impl LensLike<'_> {
     /// The lens, with its frames.
-    pub(crate) fn taken(self) -> PyResult<Optics> {
+    pub(crate) fn taken(self, py: Python<'_>) -> PyResult<Optics> {
         match self {
             Self::Lens(lens) => Ok(lens.get().optics.clone()),
-            Self::Name(name) => Ok(Lens::seen(Some(name), &View::default())?.optics),
+            Self::Name(name) => Ok(Lens::seen(py, Some(name), &View::default())?.optics),
         }
     }
 }

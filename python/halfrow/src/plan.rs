@@ -65,11 +65,16 @@ struct LoadedPlan {
 
 impl Options<'_> {
     /// The run in `recording`, if there is one, else the run that the options describe. `stop` ends it early.
-    pub(crate) fn planned(&mut self, recording: Option<&Recording>, stop: Stop) -> PyResult<Planned> {
+    pub(crate) fn planned(
+        &mut self,
+        py: Python<'_>,
+        recording: Option<&Recording>,
+        stop: Stop,
+    ) -> PyResult<Planned> {
         let timeout = choices::time_limit("timeout", self.timeout)?;
         let stop = stop.wall_limit(timeout);
         let Some(recording) = recording else {
-            let LoadedPlan { plan, files, kernel } = self.plan()?;
+            let LoadedPlan { plan, files, kernel } = self.plan(py)?;
             let inputs = files.iter().map(|file| file.path.clone()).collect();
             let options = RunOptions { timeout, stop, ..self.options(files)? };
             return Ok(Planned { plan, options, inputs, kernel });
@@ -114,11 +119,11 @@ impl Options<'_> {
         Ok(())
     }
 
-    fn plan(&mut self) -> PyResult<LoadedPlan> {
+    fn plan(&mut self, py: Python<'_>) -> PyResult<LoadedPlan> {
         self.check()?;
         let phase = choices::phase(&self.phase)?;
         let is_free = self.tables.is_none() && self.frames.is_none();
-        let LoadedPlan { plan, mut files, kernel } = self.of_tables(phase)?;
+        let LoadedPlan { plan, mut files, kernel } = self.of_tables(py, phase)?;
         let geometry = plan.tables.geometry();
         let frames = match self.frames.take() {
             None => plan.frames.clone(),
@@ -142,12 +147,12 @@ impl Options<'_> {
     }
 
     /// A plan with the tables of the call, or else with those of the paper's lens, and the files that they came from.
-    fn of_tables(&mut self, phase: Phase) -> PyResult<LoadedPlan> {
+    fn of_tables(&mut self, py: Python<'_>, phase: Phase) -> PyResult<LoadedPlan> {
         let own;
         let tables = match &self.tables {
             Some(tables) => tables.get(),
             None => {
-                own = Tables::of_paper()?;
+                own = Tables::of_paper(py)?;
                 &own
             }
         };
@@ -155,7 +160,7 @@ impl Options<'_> {
         let mut asked = tables.kernel.asked.clone();
         if let Some(kernel) = arguments::kernel(&self.kernel)? {
             let name;
-            Kernel { kernel: chosen.kernel, file: chosen.kernel_file, name, asked, .. } = kernel.taken()?;
+            Kernel { kernel: chosen.kernel, file: chosen.kernel_file, name, asked, .. } = kernel.taken(py)?;
             chosen.source = format!("{}, judged with the {name} kernel", chosen.source);
         }
         let files = tables.files.iter().cloned().chain(chosen.kernel_file.clone()).collect();

@@ -50,15 +50,15 @@ impl Tables {
         #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
     ) -> PyResult<Self> {
         let mut optics = match lens {
-            Some(lens) => lens.taken()?,
-            None => Lens::seen(None, &View::default())?.optics,
+            Some(lens) => lens.taken(py)?,
+            None => Lens::seen(py, None, &View::default())?.optics,
         };
         optics.by = choices::tables_by(rows, projection, &OfGrid { entries, nodes_every }, optics.by)?;
         let chosen = py.detach(|| optics::choose(None, optics, None)).map_err(errors::optics)?;
         let from = chosen.optics.source_of(&chosen.tables);
         let kernel = kernel.unwrap_or_else(|| KernelLike::Name(Interpolant::Hermite.name().into()));
         let files = chosen.optics.file.iter().cloned().collect();
-        Self::with_kernel(chosen, &from, Some(kernel), files)
+        Self::with_kernel(py, chosen, &from, Some(kernel), files)
     }
 
     /// The tables in a file that `write` or `halfrow tables` has written: NAME.json, or for two files with memory images
@@ -68,32 +68,34 @@ impl Tables {
     #[staticmethod]
     #[pyo3(signature = (path, *, kernel = None))]
     fn read(
+        py: Python<'_>,
         path: PathBuf,
         #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
     ) -> PyResult<Self> {
         let (mut file, files) = if TableFormat::of(&path) == Ok(TableFormat::Mem) {
-            let (tables, kernel, inputs) = mem::read(&path).map_err(errors::optics)?;
+            let (tables, kernel, inputs) = py.detach(|| mem::read(&path)).map_err(errors::optics)?;
             (TableFile { tables, kernel, about: None }, inputs.to_vec())
         } else {
-            let (file, input) = TableFile::read(&path).map_err(errors::optics)?;
+            let (file, input) = py.detach(|| TableFile::read(&path)).map_err(errors::optics)?;
             (file, vec![input])
         };
         let about = file.about.take().filter(|_| kernel.is_none());
         let optics = Optics::paper_lens_for(file.tables.geometry());
         let chosen = optics.and_then(|optics| optics::choose(Some((&path, file)), optics, None));
         let chosen = chosen.map_err(errors::optics)?;
-        Ok(Self { about, ..Self::with_kernel(chosen, &path.display().to_string(), kernel, files)? })
+        let from = path.display().to_string();
+        Ok(Self { about, ..Self::with_kernel(py, chosen, &from, kernel, files)? })
     }
 
     /// Writes them with their kernel to NAME.json, with the notes of the file that they were read from, or for NAME.mem to two
     /// files with memory images. Existing files are replaced only with `overwrite`.
     #[pyo3(signature = (path, *, overwrite = false))]
-    fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
+    fn write(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let format = TableFormat::of(&path).map_err(errors::input)?;
         outputs::check_files(format.places(&path), overwrite)?;
         let Chosen { tables, kernel, .. } = &self.chosen;
         let file = TableFile { tables: tables.clone(), kernel: kernel.clone(), about: self.about.clone() };
-        format.write(&file, &path, overwrite).map_err(errors::failed)
+        py.detach(|| format.write(&file, &path, overwrite)).map_err(errors::failed)
     }
 
     /// Columns of the frames.
@@ -192,14 +194,15 @@ impl Tables {
 
 impl Tables {
     /// The tables for the paper's lens.
-    pub(crate) fn of_paper() -> PyResult<Self> {
-        let optics = Lens::seen(None, &View::default())?.optics;
+    pub(crate) fn of_paper(py: Python<'_>) -> PyResult<Self> {
+        let optics = Lens::seen(py, None, &View::default())?.optics;
         let chosen = optics::choose(None, optics, None).map_err(errors::optics)?;
-        Self::with_kernel(chosen, "", None, Vec::new())
+        Self::with_kernel(py, chosen, "", None, Vec::new())
     }
 
     /// The tables `chosen`, which come from `from`, with `kernel` if given, else with their own.
     fn with_kernel(
+        py: Python<'_>,
         mut chosen: Chosen,
         from: &str,
         kernel: Option<KernelLike<'_>>,
@@ -207,7 +210,7 @@ impl Tables {
     ) -> PyResult<Self> {
         let kernel = match kernel {
             Some(kernel) => {
-                let kernel = kernel.taken()?;
+                let kernel = kernel.taken(py)?;
                 chosen.kernel = kernel.kernel.clone();
                 chosen.kernel_file.clone_from(&kernel.file);
                 chosen.source = format!("{from}, {} kernel", kernel.name);

@@ -36,7 +36,7 @@ pub(crate) fn verify(
     let is_stopped = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&is_stopped);
     let stop = Stop::when(move || stopped.load(Ordering::Relaxed).then_some(StoppedBy::Person));
-    let Planned { plan, options, inputs, kernel } = asked.planned(recording.as_ref(), stop)?;
+    let Planned { plan, options, inputs, kernel } = asked.planned(py, recording.as_ref(), stop)?;
     let files = Files::new(asked.overwrite)
         .reads(inputs)
         .reads_kernel(kernel.as_deref().map(Path::as_os_str))

@@ -1,6 +1,9 @@
 """Tables, lenses and kernels, compared with the program and with arithmetic done here."""
 import json
 import pickle
+import subprocess
+import sys
+import textwrap
 
 import numpy as np
 import pytest
@@ -81,6 +84,30 @@ def test_tables_come_back_from_their_files(tmp_path, small):
         small.write(tmp_path / name, overwrite=True)
     other = halfrow.Tables.read(tmp_path / "tables.json", kernel="linear")
     assert other != small and other.kernel == halfrow.Kernel("linear")
+
+
+def test_a_file_may_be_a_pipe_that_another_thread_fills(tmp_path, small, opencv):
+    """In a process of its own, since one that keeps the interpreter's lock would wait forever."""
+    read = """
+        import os, sys, threading, halfrow
+
+        def through_a_pipe(read, path):
+            os.mkfifo("pipe.json")
+            filled = threading.Thread(target=lambda: open("pipe.json", "wb").write(open(path, "rb").read()))
+            filled.start()
+            found = read("pipe.json")
+            filled.join()
+            os.remove("pipe.json")
+            return found
+
+        lens = through_a_pipe(halfrow.Lens, sys.argv[1])
+        assert lens.radius == halfrow.Lens(sys.argv[1]).radius
+        assert through_a_pipe(halfrow.Kernel, "kernel.json") == halfrow.Kernel("keys")
+        assert through_a_pipe(halfrow.Tables.read, "tables.json") == halfrow.Tables.read("tables.json")
+    """
+    halfrow.Kernel("keys").write(tmp_path / "kernel.json")
+    small.write(tmp_path / "tables.json")
+    subprocess.run([sys.executable, "-c", textwrap.dedent(read), opencv], check=True, cwd=tmp_path, timeout=100)
 
 
 @pytest.mark.parametrize("name", halfrow.KERNELS)
