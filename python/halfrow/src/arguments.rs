@@ -1,5 +1,7 @@
 //! Arguments of a call. Each is converted to its type, or refused by name.
 
+use std::path::PathBuf;
+
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
@@ -24,6 +26,8 @@ arguments! {
     board: String, "a target as text, like mock or serial:/dev/ttyUSB1";
     tables: Bound<'py, Tables>, "Tables, as Tables.from_lens or Tables.read makes them";
     lens: Option<LensLike<'py>>, "a Lens, a lens file, or \"equidistant:RADIUS\"";
+    name: PathBuf, "one of halfrow.KERNELS, or a kernel file";
+    degrees: f64, "an angle in degrees";
     kernel: Option<KernelLike<'py>>, "a Kernel, one of halfrow.KERNELS, or a kernel file";
     weights: PyReadonlyArray2<'py, f64>, "an array of float64 of shape (65, 5), as numpy.asarray(weights, numpy.float64) makes one";
     width: Option<usize>, "a number of columns";
@@ -35,6 +39,17 @@ arguments! {
     entries: Option<usize>, "the most entries that a grid may have";
     nodes_every: Option<usize>, "32 or 64";
     seed: u64, "a whole number from 0 to 2^64 - 1";
+}
+
+/// The `lens` that makes a Lens, and so is none.
+pub(crate) fn lens_file(given: &Bound<'_, PyAny>) -> PyResult<Option<PathBuf>> {
+    given.extract().map_err(|_| wrong_kind(given, "lens", "a lens file, or \"equidistant:RADIUS\""))
+}
+
+/// Refuses a `progress` that cannot be called.
+pub(crate) fn check_progress(given: &Bound<'_, PyAny>) -> PyResult<()> {
+    let takes = "a function of three arguments, as help(halfrow.verify) describes it";
+    if given.is_callable() { Ok(()) } else { Err(wrong_kind(given, "progress", takes)) }
 }
 
 fn wrong_kind(given: &Bound<'_, PyAny>, name: &str, takes: &str) -> PyErr {

@@ -34,7 +34,7 @@ pub(crate) struct Kernel {
 impl Kernel {
     #[new]
     #[pyo3(signature = (name = PathBuf::from(Interpolant::Hermite.name())))]
-    fn new(py: Python<'_>, name: PathBuf) -> PyResult<Self> {
+    fn new(py: Python<'_>, #[pyo3(from_py_with = arguments::name)] name: PathBuf) -> PyResult<Self> {
         let read = py.detach(|| optics::kernel_file(name.as_os_str()));
         let (KernelFile { kernel, about }, file) = read.map_err(errors::optics)?;
         Ok(Self { kernel, about, name: name.display().to_string(), asked: Some(name), file })

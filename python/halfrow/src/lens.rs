@@ -33,7 +33,7 @@ impl Lens {
         lens = None, *, width = None, height = None, bits = 12, centre_x = None, centre_y = None, field_of_view = PAPER_FIELD
     ))]
     fn new(
-        lens: Option<PathBuf>,
+        #[pyo3(from_py_with = arguments::lens_file)] lens: Option<PathBuf>,
         #[pyo3(from_py_with = arguments::width)] width: Option<usize>,
         #[pyo3(from_py_with = arguments::height)] height: Option<usize>,
         #[pyo3(from_py_with = arguments::bits)] bits: u32,
@@ -90,7 +90,7 @@ impl Lens {
     }
 
     /// Where a ray `degrees` off the axis is imaged, in columns from the axis; None if the lens does not image it.
-    fn column(&self, degrees: f64) -> Option<f64> {
+    fn column(&self, #[pyo3(from_py_with = arguments::degrees)] degrees: f64) -> Option<f64> {
         self.optics.camera.lens().column(degrees.to_radians())
     }
 

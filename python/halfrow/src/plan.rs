@@ -71,6 +71,9 @@ impl Options<'_> {
         recording: Option<&Recording>,
         stop: Stop,
     ) -> PyResult<Planned> {
+        if let Some(progress) = &self.progress {
+            arguments::check_progress(progress)?;
+        }
         let timeout = choices::time_limit("timeout", self.timeout)?;
         let stop = stop.wall_limit(timeout);
         let Some(recording) = recording else {

@@ -230,7 +230,7 @@ def test_options_that_cannot_be_taken_are_named(small):
 
 
 def test_a_board_is_judged_whatever_the_program_was_called_with(small, monkeypatch):
-    monkeypatch.setattr(sys, "argv", ["program", "\udcff"])
+    monkeypatch.setattr(sys, "argv", [pathlib.PurePosixPath("program"), "\udcff"])
     assert halfrow.verify(tables=small, frames="builtin:black").passed
     monkeypatch.delattr(sys, "argv")
     assert halfrow.verify(tables=small, frames=np.zeros((32, 128), np.uint16)).passed

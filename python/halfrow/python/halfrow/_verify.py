@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import Callable, Dict, Optional, Sequence, Union
+from typing import Callable, Dict, Iterable, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,12 +71,10 @@ def verify(
     Raises InputError if the call is wrong or does not fit the board, and HalfrowError if no board could be opened: that error has a
     report, too, which is also written into the folder `report`.
     """
-    if isinstance(frames, (str, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim == 2:
-        frames = (frames,)
     options: Dict[str, object] = {
         "tables": tables,
         "kernel": kernel,
-        "frames": None if frames is None else tuple(frames),
+        "frames": _several(frames),
         "phase": phase,
         "repeat": repeat,
         "seed": seed,
@@ -88,7 +86,7 @@ def verify(
         "retry_limit": retry_limit,
         "take_over": take_over,
         "require_hardware": require_hardware,
-        "arguments": [word.encode(errors="replace").decode() for word in getattr(sys, "argv", ())],
+        "arguments": [str(word).encode(errors="replace").decode() for word in getattr(sys, "argv", ())],
         "report": report,
         "record": record,
         "overwrite": overwrite,
@@ -105,5 +103,16 @@ def verify(
     raise not_begun
 
 
+def _several(frames: object) -> object:
+    """The frames as a tuple. What holds no frames stays as it is, and is refused with the other options."""
+    if isinstance(frames, (str, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim <= 2:
+        return (frames,)
+    return tuple(frames) if isinstance(frames, Iterable) else frames
+
+
 def _says_else(value: object, default: object) -> bool:
-    return value is not None if default is None else value != default
+    if default is None:
+        return value is not None
+    differs = value != default
+    # For an array this is an array, and it is no value that an option takes.
+    return bool(differs) if isinstance(differs, (bool, np.bool_)) else True
