@@ -238,7 +238,7 @@ pub enum Saying {
     #[error("not retried automatically: the board showed a fault")]
     NotRepeatedWrong,
     #[error(
-        "not retried automatically: the board lost its session, and may be at fault, or be another board now"
+        "not retried automatically: the board or its connection was away, and the board may be at fault, or another one now"
     )]
     NotRepeatedLost,
     #[error("the link was tested: {link}")]

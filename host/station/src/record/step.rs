@@ -51,7 +51,7 @@ pub struct StepRecord {
 
 impl StepRecord {
     /// Adds to an ERROR why nothing repeats the step without a person, though the plan has a retry left: the board
-    /// `was_wrong`, or else lost its session.
+    /// `was_wrong`, or else it or its connection was away.
     pub(crate) fn not_repeated(&mut self, was_wrong: bool) {
         let Some(finding) = &mut self.finding else { return };
         let why = if was_wrong { Saying::NotRepeatedWrong } else { Saying::NotRepeatedLost };

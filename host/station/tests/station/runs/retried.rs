@@ -142,7 +142,8 @@ fn a_board_that_loses_its_session_while_it_is_judged_is_tested_again_by_a_person
 }
 
 /// The end of what is told of a step that is not repeated because another board may be there.
-const MAY_BE_ANOTHER: &str = "the board lost its session, and may be at fault, or be another board now";
+const MAY_BE_ANOTHER: &str =
+    "the board or its connection was away, and the board may be at fault, or another one now";
 
 fn unnumbered() -> String {
     "mock".to_owned()
