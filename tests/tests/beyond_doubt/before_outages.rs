@@ -155,3 +155,13 @@ fn what_went_over_a_link_that_broke_as_the_board_was_opened_is_reported_too() {
     // Each link may use one.
     assert_eq!((whole.retry_limit, broken.retry_limit), (1, 2));
 }
+
+#[test]
+fn a_row_that_a_link_broke_at_is_told_by_its_frame() {
+    let is_fifth: Meant = |reply| matches!(reply, Reply::RowOut(row) if row.place.row == 4);
+    let (candidate, _) = breaking(is_fifth, Passing::clone, 0);
+    let report = verify(&System::TINY.plan(), candidate, &RunOptions::default(), &Silent).unwrap().report;
+    let [frame] = &report.frames[..] else { panic!("{:?}", report.frames) };
+    let waited_for = format!("waiting for row {} of frame {}", frame.rows, frame.number);
+    assert!(report.headline().contains(&waited_for), "{}", report.headline());
+}

@@ -206,12 +206,16 @@ impl<'a> Stream<'a> {
     fn receive(&mut self) -> Result<(), BoardError> {
         let wait = self.patience().saturating_sub(self.conversation.waited.saturating_sub(self.progress_at));
         let (missing, came) = (self.missing(), self.came());
+        let waited_for = self.arrivals.in_flight.row(missing).map(|row| row.place);
         self.arrivals.gap = false;
         self.arrivals.numbers.go_on(self.conversation.tally.packets_out, self.conversation.sequence);
         let (arrivals, mut taken) = (&mut self.arrivals, Ok(()));
         self.conversation.exchange(
             wait,
-            || format!("waiting for row {missing} of the run"),
+            || match waited_for {
+                Some(RowPlace { row, frame, .. }) => format!("waiting for row {row} of frame {frame}"),
+                None => "waiting for a row".to_owned(),
+            },
             |packet| {
                 if taken.is_ok() {
                     taken = arrivals.take(packet);
