@@ -115,6 +115,8 @@ fn what_comes_once_in_a_while_is_told_each_time_and_ends_nothing() {
     let trapped: Vec<_> = soak.differences.iter().filter(trapped).collect();
     assert!(trapped.first().is_some_and(|first| first.suspects == report.suspects), "{soak:?}");
     for difference in trapped {
+        let said = difference.finding.sentence();
+        assert!(said.contains("; the same frame had been right ") && !said.contains("repeated"), "{said}");
         let [first, ..] = &difference.suspects[..] else { panic!("{difference:?}") };
         assert!(
             matches!(&first.defect, Defect::SeenAtSpeed { row: Some(_), bits, .. } if bits == &[5]),

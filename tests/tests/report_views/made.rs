@@ -45,19 +45,30 @@ pub(crate) fn pass() -> Report {
     }
 }
 
-/// Eight hours in which two frames differed and the board was away for a minute.
-pub(crate) fn soaked() -> Report {
+/// A frame that was wrong at speed, and the suspects.
+fn wrong_at_speed() -> (Finding, Vec<Suspect>) {
     let defect = Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] };
     let finding = Finding::DiffersAtSpeed {
         wrong: 1,
         frames: 2777,
         first: 17,
-        repetition: Repetition::Trapped { frames: 18, row: 3, streamed: Streamed::NotTried, kept: None },
+        repetition: Repetition::Trapped {
+            frames: 18,
+            row: 3,
+            only_there: true,
+            streamed: Streamed::NotTried,
+            kept: None,
+        },
         suspect: Some(Box::new(defect.clone())),
         others: 0,
         short: None,
     };
-    let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 0.0 }];
+    (finding, vec![Suspect { defect, account: Account::Nothing, explained: 0.0 }])
+}
+
+/// Eight hours in which two frames differed and the board was away for a minute.
+pub(crate) fn soaked() -> Report {
+    let (finding, suspects) = wrong_at_speed();
     let (seed, generation) = (0x08d1_2e6a, 2);
     let difference = |seconds| {
         let (finding, suspects) = (finding.clone(), suspects.clone());

@@ -121,12 +121,15 @@ pub enum Repetition {
         /// How often.
         frames: u32,
     },
-    /// It was wrong again, and a row of it was kept.
+    /// It was wrong again, or while it was repeated anyway, and a row of it was kept.
     Trapped {
         /// Frames up to and including the first wrong one.
         frames: u32,
         /// The row that was kept.
         row: usize,
+        /// Whether it was wrong only while it was repeated, as in every other burst of a soak.
+        #[serde(default)]
+        only_there: bool,
         /// What came back when the frame was streamed up to that row.
         #[serde(default)]
         streamed: Streamed,
@@ -134,17 +137,24 @@ pub enum Repetition {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         kept: Option<Box<KeptRow>>,
     },
-    /// It was wrong again, and no differing row was kept.
+    /// It was wrong again, or while it was repeated anyway, and no differing row was kept.
     NothingTrapped {
         /// Frames up to and including the first wrong one.
         frames: u32,
+        /// As in [`Repetition::Trapped`].
+        #[serde(default)]
+        only_there: bool,
     },
-    /// It was wrong again, and a row was kept whose samples are right, and whose signature is not the CRC of them.
+    /// It was wrong again, or while it was repeated anyway, and a row was kept whose samples are right, and whose signature is
+    /// not the CRC of them.
     SignedWrong {
         /// Frames up to and including the first wrong one.
         frames: u32,
         /// The row that was kept.
         row: usize,
+        /// As in [`Repetition::Trapped`].
+        #[serde(default)]
+        only_there: bool,
     },
     /// It could not be made again.
     Impossible {},

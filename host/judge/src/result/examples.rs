@@ -154,6 +154,7 @@ fn on_entry_and_at_speed() -> [Finding; 6] {
             repetition: Repetition::Trapped {
                 frames: 19,
                 row: 3,
+                only_there: false,
                 streamed: Streamed::Right,
                 kept: Some(Box::new(kept_row())),
             },

@@ -192,22 +192,32 @@ fn shown(repetition: &Repetition) -> String {
         Repetition::AllRight { frames } => {
             format!("; repeated by itself, it was right {}", count(*frames, "time"))
         }
-        Repetition::Trapped { frames, row, streamed, .. } => {
+        Repetition::Trapped { frames, row, only_there, streamed, .. } => {
             let streamed = match streamed {
                 Streamed::NotTried => "",
                 Streamed::Right => "; sent row by row, the same frame is right",
                 Streamed::Wrong => "; sent row by row, the same frame is wrong as well",
             };
-            format!("; repeated, it was wrong again at try {frames}, first in row {row}{streamed}")
+            let kept = if *only_there { "; the board kept" } else { ", first in" };
+            format!("; {}{kept} row {row}{streamed}", wrong_there(*frames, *only_there))
         }
-        Repetition::NothingTrapped { frames } => {
-            format!("; repeated, it was wrong again at try {frames}, but the board kept no row that differs")
+        Repetition::NothingTrapped { frames, only_there } => {
+            format!("; {}, but the board kept no row that differs", wrong_there(*frames, *only_there))
         }
-        Repetition::SignedWrong { frames, row } => format!(
-            "; repeated, it was wrong again at try {frames}, and the board kept row {row}, whose samples are right and whose \
-             signature is not their CRC"
+        Repetition::SignedWrong { frames, row, only_there } => format!(
+            "; {}, and the board kept row {row}, whose samples are right and whose signature is not their CRC",
+            wrong_there(*frames, *only_there)
         ),
         Repetition::Impossible {} => "; it could not be repeated".to_owned(),
+    }
+}
+
+/// That a frame was wrong at try `frames`. If it was wrong `only_there`, this is no second occurrence.
+fn wrong_there(frames: u32, only_there: bool) -> String {
+    match (only_there, frames.saturating_sub(1)) {
+        (false, _) => format!("repeated, it was wrong again at try {frames}"),
+        (true, 0) => "it was the first of its burst".to_owned(),
+        (true, right) => format!("the same frame had been right {} before", count(right, "time")),
     }
 }
 

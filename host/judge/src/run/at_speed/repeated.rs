@@ -88,7 +88,7 @@ impl Run<'_> {
         let BurstSeen { frames, wrong, .. } = *watched;
         let first = watched.wrong_frames.first().map_or(0, |frame| frame.n);
         let again = if plan.mode == BurstMode::Trapped {
-            self.told_of_trap(plan, tables, watched)
+            self.told_of_trap(plan, tables, watched, true)
         } else if let Some(suspect) =
             tables_late(plan, tables, watched).or_else(|| records_late(plan, tables, watched))
         {
@@ -127,7 +127,7 @@ impl Run<'_> {
         let ends_early = EndsEarly { when_wrong: true, at: None };
         let (watched, ended) = self.watch(&plan, slice::from_ref(generation), ends_early, &mut |_, _| {});
         ended?;
-        self.told_of_trap(&plan, slice::from_ref(generation), &watched)
+        self.told_of_trap(&plan, slice::from_ref(generation), &watched, false)
     }
 
     /// Gives the board the signatures of the frame that `plan` repeats with `generation`.
@@ -137,12 +137,14 @@ impl Run<'_> {
         self.board.expect(&signatures).during(CheckName::AtSpeed)
     }
 
-    /// What the trap kept of a burst in which one frame was repeated.
+    /// What the trap kept of a burst in which one frame was repeated; it was wrong `only_there` if that burst was not made because
+    /// of it.
     fn told_of_trap(
         &mut self,
         plan: &BurstPlan,
         tables: &[Generation],
         watched: &BurstSeen,
+        only_there: bool,
     ) -> Result<Again, End> {
         let (Some(first), Some(generation)) = (watched.wrong_frames.first(), tables.first()) else {
             return Ok(Repetition::AllRight { frames: watched.frames }.into());
@@ -153,8 +155,8 @@ impl Run<'_> {
         let trapped = self.board.trap().during(CheckName::AtSpeed)?;
         let told = trapped.and_then(|trapped| Some((trapped.row, self.kept(generation, content, &trapped)?)));
         let (row, seen) = match told {
-            None => return Ok(Repetition::NothingTrapped { frames }.into()),
-            Some((row, RowVerdict::SignedWrong)) => return Ok(signed_wrong(frames, row)),
+            None => return Ok(Repetition::NothingTrapped { frames, only_there }.into()),
+            Some((row, RowVerdict::SignedWrong)) => return Ok(signed_wrong(frames, row, only_there)),
             Some((row, RowVerdict::Differs(seen))) => (row, seen),
         };
         let kept = kept_row(&seen);
@@ -172,7 +174,7 @@ impl Run<'_> {
             Some(seen) => self.diagnose_rows(&seen, "at speed", content.frame),
             None => self.suspects_of(&seen, content, streamed),
         };
-        Ok(Again { repetition: Repetition::Trapped { frames, row, streamed, kept }, suspects })
+        Ok(Again { repetition: Repetition::Trapped { frames, row, only_there, streamed, kept }, suspects })
     }
 
     /// Makes the tables of the other bank active, which takes a frame.
@@ -275,11 +277,11 @@ impl Run<'_> {
     }
 }
 
-/// A frame that was wrong again at try `frames`, of which the trap kept `row` with right samples and another signature.
-fn signed_wrong(frames: u32, row: usize) -> Again {
+/// A frame that was wrong at try `frames`, of which the trap kept `row` with right samples and another signature.
+fn signed_wrong(frames: u32, row: usize, only_there: bool) -> Again {
     let suspect =
         Suspect { defect: Defect::SignatureWrong { row }, account: Account::Nothing, explained: 0.0 };
-    Again { repetition: Repetition::SignedWrong { frames, row }, suspects: vec![suspect] }
+    Again { repetition: Repetition::SignedWrong { frames, row, only_there }, suspects: vec![suspect] }
 }
 
 /// What differs in the last row of `seen`, which is the one that the trap kept.
