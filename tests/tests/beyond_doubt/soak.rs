@@ -8,6 +8,7 @@ use std::time::Duration;
 use halfrow::board::Stop;
 use halfrow::link::{self, Candidate};
 use halfrow::progress::{Event, Silent};
+use halfrow::report;
 use halfrow::result::{
     CheckName, Defect, EqualAtSpeed, Finding, NoBurst, NotExercised, Repetition, Report, SoakDifference,
     SoakInterval, SoakLength, SoakReport,
@@ -123,6 +124,23 @@ fn what_comes_once_in_a_while_is_told_each_time_and_ends_nothing() {
             "{first:?}"
         );
     }
+    let first_of = |finding: &Finding| match finding {
+        Finding::DiffersAtSpeed { first, .. } => *first,
+        other => panic!("{other:?}"),
+    };
+    let firsts: Vec<_> = soak.differences.iter().map(|it| first_of(&it.finding)).collect();
+    assert!(firsts.is_sorted() && firsts.first() == Some(&first_of(&report.finding)), "{firsts:?}");
+}
+
+#[test]
+fn a_miscount_is_told_at_its_frame_of_the_soak_and_when_it_came() {
+    let report = soaked("mock,pixel-clock=10000,fault=hidden-pause", frames(2000));
+    let [first, second] = &soak(&report).differences[..] else { panic!("{:?}", soak(&report)) };
+    assert!(first.seconds < 5.0 && (55.0..65.0).contains(&second.seconds), "{first:?} {second:?}");
+    let is_next = matches!(second.finding, Finding::MiscountedAtSpeed { frame: 1153.., .. });
+    assert!(first.finding == report.finding && is_next, "{second:?}");
+    let page = report::html(&report, &[]).unwrap();
+    assert!(page.contains(" have wrong counts.") && page.contains("class=\"wrong\" d=\"M"), "{page}");
 }
 
 #[test]

@@ -280,7 +280,8 @@ fn a_soak_is_shown_over_time_with_what_differed() {
         rest.split('"').next().unwrap().matches('M').count()
     };
     assert_eq!((path("judged"), path("wrong")), (224, 2));
-    assert!(page.contains("after 2 h 13 min, content of seed 08d12e6a, tables of generation 2:"));
+    let when = "after 2 h 13 min, in a burst with content of seed 08d12e6a and tables of generation 2:";
+    assert!(page.contains(when));
     assert!(!self::page(&made::pass(), &[]).contains("over time"));
 }
 

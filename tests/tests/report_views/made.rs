@@ -77,6 +77,7 @@ pub(crate) fn soaked() -> Report {
     let interval = |index| SoakInterval {
         frames: if index == 100 { 0 } else { 5924 },
         wrong: u64::from(index == 62 || index == 200),
+        miscounted: 0,
     };
     let soak = SoakReport {
         asked: SoakLength::Time { seconds: 28_800.0 },
@@ -84,6 +85,7 @@ pub(crate) fn soaked() -> Report {
         bursts: 480,
         frames: 1_326_976,
         wrong: 2,
+        miscounted: 0,
         paused: 0,
         held_back: 0,
         differences: vec![difference(7980.5), difference(25_700.0)],

@@ -301,10 +301,16 @@ pub fn soak(soak: &SoakReport) -> String {
     };
     let judged = format!(": {} in {}", count(soak.frames, "frame"), count(soak.bursts, "burst"));
     words.push_str(&judged);
-    match soak.wrong {
-        0 => words.push_str(", none of which differs"),
-        wrong => words.push_str(&format!(", {} of which {}", grouped(wrong), verb(wrong, "differ"))),
+    let mut wrong = Vec::new();
+    if soak.wrong > 0 {
+        wrong.push(format!("{} of which {}", grouped(soak.wrong), verb(soak.wrong, "differ")));
     }
+    if soak.miscounted > 0 {
+        let have = if soak.miscounted == 1 { "has" } else { "have" };
+        wrong.push(format!("{} of which {have} wrong counts", grouped(soak.miscounted)));
+    }
+    let wrong = if wrong.is_empty() { "none of which differs".to_owned() } else { wrong.join(" and ") };
+    words.push_str(&format!(", {wrong}"));
     if soak.paused > 0 {
         words.push_str(&format!("; {} with pauses", grouped(soak.paused)));
     }
@@ -316,7 +322,7 @@ pub fn soak(soak: &SoakReport) -> String {
 pub fn soak_difference(difference: &SoakDifference) -> String {
     let SoakDifference { seconds, seed, generation, finding, .. } = difference;
     format!(
-        "after {}, content of seed {seed:08x}, tables of generation {generation}: {}",
+        "after {}, in a burst with content of seed {seed:08x} and tables of generation {generation}: {}",
         span(*seconds),
         finding.sentence()
     )

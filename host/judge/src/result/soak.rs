@@ -39,6 +39,9 @@ pub struct SoakReport {
     pub frames: u64,
     /// Frames whose signature is not the reference's.
     pub wrong: u64,
+    /// Frames whose signature is right and of which the board counts something wrong.
+    #[serde(default)]
+    pub miscounted: u64,
     /// Frames in which the enable was off at times, so that they were not at speed.
     pub paused: u64,
     /// Frames that waited until the host had the records of earlier ones.
@@ -61,6 +64,7 @@ impl SoakReport {
             bursts: 0,
             frames: 0,
             wrong: 0,
+            miscounted: 0,
             paused: 0,
             held_back: 0,
             differences: Vec::new(),
@@ -78,7 +82,7 @@ pub struct SoakDifference {
     pub seed: u32,
     /// The generation of the tables active when the burst began; every other frame of a burst may have those of the other bank.
     pub generation: u8,
-    /// What was seen.
+    /// What was seen. Its frame is counted from the beginning of the soak, and its other figures are those of the burst.
     pub finding: Finding,
     /// The parts to which it points, the likeliest first.
     pub suspects: Vec<Suspect>,
@@ -100,6 +104,20 @@ pub struct SoakInterval {
     pub frames: u64,
     /// How many of them have another signature than the reference's.
     pub wrong: u64,
+    /// How many have the right signature and a wrong count.
+    #[serde(default)]
+    pub miscounted: u64,
+}
+
+impl SoakInterval {
+    /// What was judged besides `other`, which is a part of it.
+    pub(crate) fn without(self, other: Self) -> Self {
+        Self {
+            frames: self.frames - other.frames,
+            wrong: self.wrong - other.wrong,
+            miscounted: self.miscounted - other.miscounted,
+        }
+    }
 }
 
 impl Default for SoakChart {
@@ -128,7 +146,11 @@ impl SoakChart {
 }
 
 fn sum(one: SoakInterval, other: SoakInterval) -> SoakInterval {
-    SoakInterval { frames: one.frames + other.frames, wrong: one.wrong + other.wrong }
+    SoakInterval {
+        frames: one.frames + other.frames,
+        wrong: one.wrong + other.wrong,
+        miscounted: one.miscounted + other.miscounted,
+    }
 }
 
 #[cfg(test)]
@@ -140,7 +162,7 @@ mod tests {
         let mut chart = SoakChart::default();
         for second in 0..28_800 {
             let wrong = u64::from(second == 14_400);
-            chart.add(Duration::from_secs(second), SoakInterval { frames: 46, wrong });
+            chart.add(Duration::from_secs(second), SoakInterval { frames: 46, wrong, miscounted: 0 });
         }
         // 28,800 s / 128 s.
         assert_eq!((chart.interval_seconds, chart.intervals.len()), (128.0, 225));
@@ -153,7 +175,7 @@ mod tests {
     #[test]
     fn time_without_frames_is_an_empty_interval() {
         let mut chart = SoakChart::default();
-        let judged = SoakInterval { frames: 1, wrong: 0 };
+        let judged = SoakInterval { frames: 1, wrong: 0, miscounted: 0 };
         chart.add(Duration::ZERO, judged);
         chart.add(Duration::from_millis(2500), judged);
         assert_eq!(chart.intervals.iter().map(|interval| interval.frames).collect::<Vec<_>>(), [1, 0, 1]);

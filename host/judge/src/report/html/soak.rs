@@ -28,7 +28,8 @@ pub(super) fn section(soak: &SoakReport) -> Markup {
     }
 }
 
-/// A pale bar for each interval, as tall as the number of its frames, with a red one over it for those that differ.
+/// A pale bar for each interval, as tall as the number of its frames, with a red one over it for those that differ or are
+/// miscounted.
 fn chart(chart: &SoakChart) -> Markup {
     let most = chart.intervals.iter().map(|interval| interval.frames).max().unwrap_or(0);
     let bars = |count: fn(&SoakInterval) -> u64, lowest: u64| {
@@ -49,7 +50,7 @@ fn chart(chart: &SoakChart) -> Markup {
                     preserveAspectRatio="none" role="img" aria-label=(caption) {
                     title { (caption) }
                     path.judged d=(bars(|interval| interval.frames, LOWEST)) {}
-                    path.wrong d=(bars(|interval| interval.wrong, LOWEST_WRONG)) {}
+                    path.wrong d=(bars(|interval| interval.wrong + interval.miscounted, LOWEST_WRONG)) {}
                 }
             }
             div.axis { span { "0" } span { (span(whole)) } }

@@ -138,8 +138,8 @@ impl Run<'_> {
         if watched.wrong > 0 {
             return Err(self.wrong_at_speed(plan, tables, &watched));
         }
-        if let Some(finding) = watched.miscounted {
-            return Err(End::failed(CheckName::AtSpeed, finding));
+        if let Some(miscount) = watched.miscount {
+            return Err(End::failed(CheckName::AtSpeed, miscount.finding));
         }
         ended.map(|()| watched)
     }

@@ -39,6 +39,15 @@ pub(super) struct WrongFrame {
     pub(super) at: Duration,
 }
 
+/// Something that the board counts wrong.
+#[derive(Clone, Debug)]
+pub(super) struct Miscount {
+    /// What it is.
+    pub(super) finding: Finding,
+    /// When the record that shows it came, on the link's clock.
+    pub(super) at: Duration,
+}
+
 /// What was seen of a burst.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BurstSeen {
@@ -48,8 +57,10 @@ pub(super) struct BurstSeen {
     pub(super) wrong: u32,
     /// The first of these, at most [`KEPT`].
     pub(super) wrong_frames: Vec<WrongFrame>,
-    /// The first wrong count in a frame whose signature is right.
-    pub(super) miscounted: Option<Finding>,
+    /// Frames whose signature is right and of which something is counted wrong.
+    pub(super) miscounted: u32,
+    /// The first wrong count.
+    pub(super) miscount: Option<Miscount>,
     /// Frames in which the enable was off at times.
     pub(super) paused: u32,
     /// Frames that waited for a free record.
@@ -84,17 +95,18 @@ impl BurstSeen {
         ];
         let wrong = counts.into_iter().find(|(_, counted, right)| counted != right);
         if let Some((count, counted, right)) = wrong {
-            let frame = n;
-            self.miscounted.get_or_insert(Finding::MiscountedAtSpeed { frame, count, counted, right });
+            self.miscounted += 1;
+            let finding = Finding::MiscountedAtSpeed { frame: n, count, counted, right };
+            self.miscount.get_or_insert(Miscount { finding, at: watch.board.now() });
         }
     }
 
     /// Checks that there are no more `records` of the burst `plan` than it has frames.
-    fn compare_count(&mut self, plan: &BurstPlan, records: u32) {
+    fn compare_count(&mut self, plan: &BurstPlan, records: u32, at: Duration) {
         let (frame, count) = (plan.frames, BurstCount::Records);
         if records > frame {
             let finding = Finding::MiscountedAtSpeed { frame, count, counted: records, right: frame };
-            self.miscounted.get_or_insert(finding);
+            self.miscount.get_or_insert(Miscount { finding, at });
         }
     }
 }
@@ -131,7 +143,8 @@ impl Watch<'_> {
         }
         let judged = (watched.frames - from) as usize;
         self.left = judged == AHEAD && judged < fetched.records.len();
-        watched.compare_count(self.plan, from.saturating_add(fetched.records.len() as u32));
+        let records = from.saturating_add(fetched.records.len() as u32);
+        watched.compare_count(self.plan, records, self.board.now());
         self.stopwatch.note(self.plan, watched, &fetched, from, (before, self.board.heard_at()));
         if !fetched.records.is_empty() {
             (self.told)(watched, self.board.now());

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::progress::Soaked;
 use crate::result::{
-    CheckName, Defect, Finding, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect,
+    BurstCount, CheckName, Defect, Finding, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect,
 };
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::BurstSeen;
@@ -77,12 +77,14 @@ impl Account {
 
     /// Adds what came up to `now` of a burst. `watched` is what was seen of it in all; `before` is what was already counted.
     pub(super) fn add(&mut self, before: &mut SoakInterval, watched: &BurstSeen, now: Duration) -> Soaked {
-        let all = SoakInterval { frames: watched.frames.into(), wrong: watched.wrong.into() };
-        let new = SoakInterval { frames: all.frames - before.frames, wrong: all.wrong - before.wrong };
+        let BurstSeen { frames, wrong, miscounted, .. } = *watched;
+        let all = SoakInterval { frames: frames.into(), wrong: wrong.into(), miscounted: miscounted.into() };
+        let new = all.without(*before);
         *before = all;
         let time = now.saturating_sub(self.begun);
         self.report.frames += new.frames;
         self.report.wrong += new.wrong;
+        self.report.miscounted += new.miscounted;
         self.report.chart.add(time, new);
         let SoakReport { frames, wrong, asked, .. } = self.report;
         Soaked { time, frames, wrong, of: asked }
@@ -90,14 +92,14 @@ impl Account {
 
     /// Keeps `end`, the difference in the burst that was just played, seen at `at` on the run's clock.
     pub(super) fn keep(&mut self, played: &Played, at: Duration, end: End) {
+        let end = self.counted_on(played, end);
         let (suspects, first) = match &end {
             End::Failed { suspects, .. } => (suspects.clone(), &mut self.first),
             End::Error { .. } => (Vec::new(), &mut self.first_doubtful),
         };
         let finding = end.finding().clone();
-        let before = self.report.frames - u64::from(played.watched.frames);
         match first {
-            None => *first = Some(counted_after(before, end)),
+            None => *first = Some(end),
             Some(first) => tell_more(first, &suspects),
         }
         if self.has_room() {
@@ -106,6 +108,21 @@ impl Account {
             let difference = SoakDifference { seconds, seed, generation, finding, suspects };
             self.report.differences.push(difference);
         }
+    }
+
+    /// A difference in the burst that was just played, with its frame counted from the beginning of the soak.
+    pub(super) fn counted_on(&self, played: &Played, mut end: End) -> End {
+        let before = self.report.frames - u64::from(played.watched.frames);
+        let End::Failed { finding, .. } = &mut end else { return end };
+        match finding {
+            // The frame of such a finding is how many the burst has.
+            Finding::MiscountedAtSpeed { count: BurstCount::Records, .. } => {}
+            Finding::DiffersAtSpeed { first: frame, .. } | Finding::MiscountedAtSpeed { frame, .. } => {
+                *frame = counted(before + u64::from(*frame));
+            }
+            _ => {}
+        }
+        end
     }
 
     /// Keeps a difference that the link may have caused and that could not be tried in another session.
@@ -144,14 +161,6 @@ impl Account {
         }
         end
     }
-}
-
-/// A burst's difference with its frame counted from the beginning of the soak, of which `before` frames came before the burst.
-fn counted_after(before: u64, mut end: End) -> End {
-    if let End::Failed { finding: Finding::DiffersAtSpeed { first, .. }, .. } = &mut end {
-        *first = counted(before + u64::from(*first));
-    }
-    end
 }
 
 /// Takes over the suspects of another difference if a row of it was seen, and none of the first.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use halfrow_protocol::message::BurstMode;
 
 use super::burst::{BurstPlan, LONGEST_LOOK};
-use super::watched::{BurstSeen, EndsEarly};
+use super::watched::{BurstSeen, EndsEarly, Miscount};
 use super::{NONE, price};
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::{Event, Step};
@@ -31,10 +31,12 @@ fn is_trapped(draw: u32) -> bool {
 }
 
 /// What differed in a burst or in the tables before it, or an answer that no sound board gives.
-fn difference(played: &Result<Played, End>) -> Option<End> {
+fn difference(account: &Account, played: &Result<Played, End>) -> Option<End> {
     let ended = match played {
         Ok(played) => match played.finding() {
-            Some(finding) => return Some(End::failed(CheckName::AtSpeed, finding)),
+            Some(finding) => {
+                return Some(account.counted_on(played, End::failed(CheckName::AtSpeed, finding)));
+            }
             None => played.ended.as_ref().err(),
         },
         Err(end) => Some(end),
@@ -136,7 +138,7 @@ impl Run<'_> {
     ) -> Result<(), End> {
         for _ in 0..=LOOKS {
             let played = self.play(account, bursts, draw);
-            let Some(found) = difference(&played) else {
+            let Some(found) = difference(account, &played) else {
                 let played = played?;
                 if played.ended.is_ok()
                     && let Some((found, doubt)) = doubtful.take()
@@ -210,11 +212,14 @@ impl Run<'_> {
     /// Diagnoses what differed in a burst.
     fn look_into(&mut self, account: &mut Account, played: &Played) {
         let Played { plan, tables, watched, .. } = played;
-        let at = watched.wrong_frames.first().map(|first| self.sessions.earlier() + first.at);
-        let at = at.unwrap_or_else(|| self.clock());
-        let end = match &watched.miscounted {
+        let miscount = watched.miscount.as_ref();
+        let at = watched.wrong_frames.first().map(|first| first.at).or(miscount.map(|miscount| miscount.at));
+        let at = at.map_or_else(|| self.clock(), |at| self.sessions.earlier() + at);
+        let end = match miscount {
             _ if !account.wants_more() => return,
-            Some(finding) if watched.wrong == 0 => End::failed(CheckName::AtSpeed, finding.clone()),
+            Some(Miscount { finding, .. }) if watched.wrong == 0 => {
+                End::failed(CheckName::AtSpeed, finding.clone())
+            }
             _ => self.wrong_at_speed(plan, tables, watched),
         };
         account.keep(played, at, end);

@@ -17,7 +17,7 @@ pub(super) struct Played {
 impl Played {
     /// What differed in it, before it is looked into.
     pub(super) fn finding(&self) -> Option<Finding> {
-        let BurstSeen { frames, wrong, wrong_frames, miscounted, .. } = &self.watched;
+        let BurstSeen { frames, wrong, wrong_frames, miscount, .. } = &self.watched;
         let differs = wrong_frames.first().map(|first| Finding::DiffersAtSpeed {
             wrong: *wrong,
             frames: *frames,
@@ -27,7 +27,7 @@ impl Played {
             others: 0,
             short: None,
         });
-        differs.or_else(|| miscounted.clone())
+        differs.or_else(|| miscount.as_ref().map(|miscount| miscount.finding.clone()))
     }
 
     /// The generation of the tables that were active.
