@@ -130,7 +130,7 @@ fn soak(soak: &SoakReport) -> String {
     for difference in soak.differences.iter().take(MOST_DIFFERENCES) {
         push(&mut text, "differs", RED, &wording::soak_difference(difference));
     }
-    let left_out = soak.differences.len().saturating_sub(MOST_DIFFERENCES);
+    let left_out = soak.unlisted(MOST_DIFFERENCES);
     if left_out > 0 {
         let _ = writeln!(text, "{DIM}   … and {}{DIM:#}", words::count(left_out, "more difference"));
     }

@@ -8,13 +8,14 @@ use std::time::Duration;
 use halfrow::board::Stop;
 use halfrow::link::{self, Candidate};
 use halfrow::progress::{Event, Silent};
-use halfrow::report;
+use halfrow::report::{self, wording};
 use halfrow::result::{
     CheckName, Defect, EqualAtSpeed, Finding, NoBurst, NotExercised, Repetition, Report, SoakDifference,
     SoakInterval, SoakLength, SoakReport,
 };
 use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
+use halfrow_cli::text;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{BurstState, FrameRecord, Records, Request};
 use halfrow_protocol::{Kind, Packet, Reply};
@@ -150,6 +151,10 @@ fn a_board_that_is_always_wrong_is_looked_into_so_often_and_then_counted() {
     let soak = soak(&report);
     assert_eq!((soak.frames, soak.differences.len()), (50_000, SoakReport::MOST_DIFFERENCES));
     assert!(soak.wrong > 45_000, "{soak:?}");
+    let rest = |listed| format!("and {} more differences", soak.bursts as usize - listed);
+    let (text, page) = (text::render(&report), report::html(&report, &[]).unwrap());
+    assert!(text.contains(&rest(10)), "{text}");
+    assert!(page.contains(&rest(SoakReport::MOST_DIFFERENCES)), "{page}");
 }
 
 /// The report on a soak that is stopped when `frames` of its frames are judged.
@@ -182,6 +187,8 @@ fn what_differed_is_no_error_for_being_interrupted() {
     let report = stopped_at("mock,pixel-clock=10000,fault=slow-path,one-in=1000000", 10_000);
     assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
     assert!(soak(&report).wrong > 0);
+    let said = wording::soak(soak(&report));
+    assert!(said.contains("; it ended early: ") && said.contains("stopped by hand"), "{said}");
 }
 
 /// The stop comes before it is checked whether the link may be the cause.

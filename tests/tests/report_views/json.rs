@@ -77,6 +77,20 @@ fn a_report_that_does_not_say_what_was_varied_is_read() {
     assert_eq!(read, Report { not_exercised: Vec::new(), ..made::pass() });
 }
 
+/// A report of a version that counted neither wrong counts nor bursts with a difference.
+#[test]
+fn a_soak_that_counts_less_is_read() {
+    let mut old = json(&made::soaked());
+    let soak = old["soak"].as_object_mut().unwrap();
+    let new = ["miscounted", "differing_bursts"].map(|key| soak.remove(key).unwrap());
+    assert_eq!(new, [0, 2]);
+    let interval = soak["chart"]["intervals"][0].as_object_mut().unwrap();
+    assert_eq!(interval.remove("miscounted").unwrap(), 0);
+    let read = serde_json::from_value::<Report>(old).unwrap().soak.unwrap();
+    // Two differences are listed.
+    assert_eq!((read.unlisted(1), read.unlisted(2), read.miscounted), (1, 0, 0));
+}
+
 /// A report of a version in which row factors were the only tables.
 #[test]
 fn a_report_with_the_earlier_names_of_tables_is_read() {

@@ -89,6 +89,8 @@ pub(crate) fn soaked() -> Report {
         paused: 0,
         held_back: 0,
         differences: vec![difference(7980.5), difference(25_700.0)],
+        differing_bursts: 2,
+        ended: None,
         chart: SoakChart { interval_seconds: 128.0, intervals: (0..225).map(interval).collect() },
     };
     Report {

@@ -314,6 +314,9 @@ pub fn soak(soak: &SoakReport) -> String {
     if soak.paused > 0 {
         words.push_str(&format!("; {} with pauses", grouped(soak.paused)));
     }
+    if let Some(ended) = &soak.ended {
+        words.push_str(&format!("; it ended early: {}", ended.sentence()));
+    }
     words
 }
 

@@ -48,6 +48,12 @@ pub struct SoakReport {
     pub held_back: u64,
     /// The first difference of each burst, in order; only the first [`SoakReport::MOST_DIFFERENCES`] are kept.
     pub differences: Vec<SoakDifference>,
+    /// Bursts in which something differed, those included that `differences` has no room for; 0 in earlier reports.
+    #[serde(default)]
+    pub differing_bursts: u32,
+    /// Why it ended early although the run's finding is something that had differed before; none if it did not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ended: Option<Finding>,
     /// When frames were judged.
     pub chart: SoakChart,
 }
@@ -68,8 +74,17 @@ impl SoakReport {
             paused: 0,
             held_back: 0,
             differences: Vec::new(),
+            differing_bursts: 0,
+            ended: None,
             chart: SoakChart::default(),
         }
+    }
+
+    /// How many bursts with a difference are missing where the first `listed` of the differences are told.
+    #[must_use]
+    pub fn unlisted(&self, listed: usize) -> usize {
+        let kept = self.differences.len();
+        kept.max(self.differing_bursts as usize) - kept.min(listed)
     }
 }
 

@@ -6,8 +6,8 @@ use maud::{Markup, html};
 
 use super::suspects;
 use crate::report::wording;
-use crate::result::{SoakChart, SoakDifference, SoakInterval, SoakReport};
-use crate::words::{grouped, plain, span};
+use crate::result::{SoakChart, SoakInterval, SoakReport};
+use crate::words::{count, grouped, plain, span};
 
 /// The height of the tallest bar.
 const TALLEST: u64 = 100;
@@ -23,7 +23,7 @@ pub(super) fn section(soak: &SoakReport) -> Markup {
             h2 { "At speed, over time" }
             p { (wording::soak(soak)) "." }
             (chart(&soak.chart))
-            @if !soak.differences.is_empty() { (differences(&soak.differences)) }
+            @if !soak.differences.is_empty() { (differences(soak)) }
         }
     }
 }
@@ -59,10 +59,12 @@ fn chart(chart: &SoakChart) -> Markup {
     }
 }
 
-fn differences(differences: &[SoakDifference]) -> Markup {
+fn differences(soak: &SoakReport) -> Markup {
+    let listed = soak.differences.len();
+    let unlisted = soak.unlisted(listed);
     html! {
         h3 { "What differed" }
-        ol.suspects { @for difference in differences {
+        ol.suspects { @for difference in &soak.differences {
             li {
                 p { (plain(&wording::soak_difference(difference))) }
                 @if !difference.suspects.is_empty() {
@@ -73,5 +75,8 @@ fn differences(differences: &[SoakDifference]) -> Markup {
                 }
             }
         } }
+        @if unlisted > 0 {
+            p { "… and " (count(unlisted, "more difference")) "; only the first " (listed) " are looked into." }
+        }
     }
 }

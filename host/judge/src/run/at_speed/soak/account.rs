@@ -9,7 +9,7 @@ use crate::result::{
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::BurstSeen;
 use crate::run::findings::End;
-use crate::run::sessions::second_look::broken_off;
+use crate::run::sessions::second_look::{broken_off, unasked};
 use crate::verdict::Cause;
 
 use super::played::Played;
@@ -132,7 +132,7 @@ impl Account {
 
     /// Ends the soak at `now` on the run's clock with the first of these that applies:
     ///
-    /// 1. a difference that is the board's, which nothing later makes right;
+    /// 1. a difference that is the board's, which nothing later makes right; what `ended` the bursts early is told beside it;
     /// 2. what `ended` the bursts early, together with a difference that could not be tried in another session, if there
     ///    is one;
     /// 3. a difference that the link may have caused;
@@ -140,7 +140,10 @@ impl Account {
     pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
         self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
         match (self.first.take(), ended, self.first_doubtful.take()) {
-            (Some(end), _, _) => Err(self.of_all_frames(end)),
+            (Some(end), ended, _) => {
+                self.report.ended = ended.err().map(|ended| unasked(&ended));
+                Err(self.of_all_frames(end))
+            }
             (
                 None,
                 Err(end),

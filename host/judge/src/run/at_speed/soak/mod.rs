@@ -145,6 +145,7 @@ impl Run<'_> {
                 {
                     let finding = Finding::RightInAnotherSession { found: Box::new(found), doubt };
                     let end = End::error(CheckName::AtSpeed, Cause::Station, finding);
+                    account.report.differing_bursts += 1;
                     account.keep(&played, self.clock(), end);
                 }
                 return played.ended;
@@ -215,6 +216,7 @@ impl Run<'_> {
         let miscount = watched.miscount.as_ref();
         let at = watched.wrong_frames.first().map(|first| first.at).or(miscount.map(|miscount| miscount.at));
         let at = at.map_or_else(|| self.clock(), |at| self.sessions.earlier() + at);
+        account.report.differing_bursts += 1;
         let end = match miscount {
             _ if !account.wants_more() => return,
             Some(Miscount { finding, .. }) if watched.wrong == 0 => {
