@@ -114,3 +114,30 @@ fn what_a_link_has_not_taken_yet_is_not_sent_again() {
         assert_eq!((report.link.retries, report.link.strays), (0, 0), "{before} bytes: {:?}", report.link);
     }
 }
+
+/// The zero behind an answer is the first byte that the stall keeps back.
+#[test]
+fn a_link_that_stalls_before_a_zero_is_not_called_a_board_without_zeros() {
+    let candidate = open("mock");
+    let (mut came, mut last, mut held, mut until) = (0, 0, Vec::new(), None);
+    let link = Through::boxed(candidate.link, move |link, out, back, wait| {
+        let mut new = Vec::new();
+        let taken = link.exchange(out, &mut new, wait)?;
+        let now = link.now();
+        for byte in new {
+            came += 1;
+            if came > 2000 && byte == 0 && last != 0 {
+                until.get_or_insert(now + STALL);
+            }
+            last = byte;
+            held.push(byte);
+            if until.is_none_or(|until| now >= until) {
+                back.append(&mut held);
+            }
+        }
+        Ok(taken)
+    });
+    let report = judge_by_plan(&System::TINY.plan(), Candidate { link, ..candidate });
+    passes(&report, "before a zero");
+    assert!(report.link.seconds > STALL.as_secs_f64(), "{:?}", report.link);
+}

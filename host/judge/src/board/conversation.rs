@@ -19,6 +19,7 @@ use super::sent_requests::{LastRequests, Outgoing, Stray};
 use super::tally::Tally;
 use super::{BoardError, OpenOptions, Received, Stop};
 use crate::link::{ClosedLink, Link, LinkError};
+use unclosed::Unclosed;
 
 /// The most that an exchange which moved bytes adds to the time waited. An exchange returns as soon as a byte has moved. If it
 /// took longer, the host may have been kept from running, and what it has not read yet is not held against the board.
@@ -66,8 +67,7 @@ pub(super) struct Conversation {
     pub(super) tally: Tally,
     /// What came damaged before the session.
     before: Received,
-    /// Waits in succession that ended with a packet without its closing zero.
-    unclosed: u32,
+    unclosed: Unclosed,
     pub(super) limit: RetryLimit,
     /// The time spent waiting for the link, by which deadlines are measured. While the host is kept from running, or is busy
     /// elsewhere, it cannot tell that a board is late.
@@ -94,7 +94,7 @@ impl Conversation {
             session: Session::default(),
             tally: Tally::default(),
             before: Received::default(),
-            unclosed: 0,
+            unclosed: Unclosed::default(),
             limit: options.retry_limit,
             waited: Duration::ZERO,
             counted: Counted::default(),

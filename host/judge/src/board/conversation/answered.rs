@@ -7,6 +7,7 @@ use halfrow_protocol::{Kind, Packet};
 
 use super::Conversation;
 use super::retry::{Next, Retry};
+use super::unclosed::Unclosed;
 use crate::board::BoardError;
 use crate::board::answer::{OwnedPacket, take_reply};
 use crate::board::deadlines::Step;
@@ -87,7 +88,7 @@ impl Conversation {
     fn note_answer(&mut self, answer: &OwnedPacket, kind: Kind, again: u32, begun: Duration) {
         self.note_duration(again, self.since(begun));
         if again == 0 {
-            self.unclosed = 0;
+            self.unclosed = Unclosed::default();
         }
         self.tally.answered += u64::from(answer.header.kind == kind.code());
     }
