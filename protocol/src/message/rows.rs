@@ -2,9 +2,9 @@
 
 use alloc::vec::Vec;
 
-use crate::Malformed;
 use crate::bytes::Fields;
 use crate::samples::{pack, packed_length};
+use crate::{Kind, Malformed, Packet};
 
 /// Which row it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -116,6 +116,16 @@ impl<'a> RowOut<'a> {
         }
         payload.extend_from_slice(self.packed);
         payload.extend(self.entered.into_iter().flat_map(u32::to_le_bytes));
+    }
+
+    /// The place of a row whose samples need not all be there; none if `packet` is no row or ends before them.
+    #[must_use]
+    pub fn place_of(packet: &Packet<'_>) -> Option<RowPlace> {
+        let is_row = packet.header.kind == Kind::RowOut.code() && packet.payload.len() >= Self::HEAD;
+        is_row
+            .then_some(packet.payload)
+            .and_then(|payload| RowPlace::read(&mut Fields(payload)).ok())
+            .map(|(place, _)| place)
     }
 
     pub(crate) fn read(mut fields: Fields<'a>) -> Result<Self, Malformed> {

@@ -55,8 +55,16 @@ impl<'a> Arrivals<'a> {
         if ![Kind::RowOut.code(), Kind::Refusal.code()].contains(&packet.header.kind) {
             return Ok(());
         }
-        let malformed = |source| BoardError::Malformed { kind: Kind::RowIn, source };
-        match Reply::read(packet).map_err(malformed)? {
+        let reply = match (Reply::read(packet), RowOut::place_of(packet)) {
+            (Ok(reply), _) => reply,
+            // A repeat that waited while CONFIGURE came may leave with the length of the rows after it.
+            (Err(_), Some(place)) if place.row_sequence < self.missing => {
+                self.copies.push(place.row_sequence);
+                return Ok(());
+            }
+            (Err(source), _) => return Err(BoardError::Malformed { kind: Kind::RowIn, source }),
+        };
+        match reply {
             Reply::RowOut(row) => self.take_row(&row),
             Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
             Reply::Refusal(refusal) if refusal.kind == Kind::RowIn.code() => {
@@ -103,5 +111,35 @@ impl<'a> Arrivals<'a> {
         self.gap = !self.ahead.is_empty();
         self.in_flight.forget_before(self.missing);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::iter;
+
+    use halfrow_protocol::Header;
+
+    use super::super::{Given, Unjudged};
+    use super::*;
+
+    /// A packet of the row `row_sequence`, 64 samples wide by its place, that carries those of a narrower row.
+    fn cut(row_sequence: u8) -> Vec<u8> {
+        let place = [row_sequence, 0, 0, 0, 0, 0, row_sequence, 0, 64, 0, 0, 1];
+        place.into_iter().chain(iter::repeat_n(0, 20)).collect()
+    }
+
+    #[test]
+    fn a_row_that_came_before_may_come_again_with_another_length() {
+        let mut traffic = Unjudged(iter::empty());
+        let mut arrivals = Arrivals::new(&mut traffic, 5, Numbers::new(Given::default(), 0));
+        let mut take = |row_sequence: u8| {
+            let header =
+                Header { kind: Kind::RowOut.code(), sequence: 0, reply: false, session: 1, window: 0 };
+            arrivals.take(&Packet { header, payload: &cut(row_sequence) })
+        };
+        assert!(take(4).is_ok());
+        assert!(matches!(take(5), Err(BoardError::Malformed { .. })));
+        assert_eq!(arrivals.copies, [4]);
     }
 }
