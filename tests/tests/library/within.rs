@@ -70,6 +70,29 @@ fn a_link_that_takes_no_time_has_time_for_everything() {
     assert!(within.curve.last().is_some_and(|last| last.found <= within.found), "{within:?}");
 }
 
+/// Where rows are so narrow that several come at once, the link stands still until they are acknowledged; how many come at once
+/// changes at a width of 88, and again at 144.
+#[test]
+fn the_time_is_kept_with_narrow_rows_on_a_link_with_a_long_round_trip() {
+    let _alone = crate::RUNS.lock();
+    for board in
+        ["mock,speed=300000,delay=0.0005", "mock,speed=300000,delay=0.001", "mock,speed=1200000,delay=0.0005"]
+    {
+        for width in [64, 84, 88, 128, 140, 144, 160] {
+            let system = System { width, height: 72, radius: 90.0, ..System::TINY };
+            for seconds in [0.5, 1.0] {
+                let within = Some(Duration::from_secs_f64(seconds));
+                let plan = Plan { within, fail_fast: false, ..system.plan() };
+                let report = judged(board, &plan).unwrap();
+                let took = report.link.seconds;
+                let what = format!("{board}, width {width}: {took} of {seconds} s");
+                assert_eq!(report.verdict(), Verdict::Pass, "{what}: {}", report.headline());
+                assert!(took <= seconds, "{what}");
+            }
+        }
+    }
+}
+
 #[test]
 fn what_is_covered_is_found_and_what_is_left_out_passes_and_is_named() {
     let _alone = crate::RUNS.lock();

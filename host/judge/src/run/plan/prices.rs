@@ -17,6 +17,8 @@ use crate::tables::datapath_of;
 
 /// The least payload that a row is priced at: between shorter rows the link stands still while they are acknowledged.
 const SMALL: usize = 300;
+/// Bytes that a link is taken to hand over at once: rows of which several fit into them are seen, and acknowledged, together.
+const AT_ONCE: usize = 512;
 /// The longest payload of requests and replies that carry neither rows nor tables.
 const SHORT: usize = 64;
 /// The payload of the reply to CAPABILITIES, with the board's name.
@@ -194,19 +196,23 @@ impl<'a> Prices<'a> {
     }
 
     /// `rows` rows that follow each other. The slowest of way out, pixel clock and way back counts or, where answers take
-    /// long, how many rows the board's banks hold meanwhile. The first two rows go out before anything comes back,
+    /// long, how many rows the board's banks hold meanwhile: rows that the host sees together leave the link still until they
+    /// have come and others have gone out. The first two rows go out before anything comes back,
     /// because a row leaves while the next one enters. After the last one the board is asked what reached it.
     pub(crate) fn rows(&self, rows: usize, width: usize, between: usize) -> f64 {
         let packed = (3 * width).div_ceil(2);
-        let back = RowOut::HEAD + packed + RowOut::ENTERED;
+        let returned = RowOut::HEAD + packed + RowOut::ENTERED;
         let carried = |payload| wire_length(payload) as f64 / self.rates.bytes_per_second;
-        let (out, back) = (carried(RowIn::HEAD + packed), carried(back).max(carried(SMALL)));
+        let (out, back) = (carried(RowIn::HEAD + packed), carried(returned.max(SMALL)));
         let played = self.clocks(width + between);
         let alone = 2.0 * (out + played) + self.rates.round_trip;
         // One bank has the row that only the next one pushes out.
         let banks = self.capabilities.row_banks_in.min(self.capabilities.row_banks_out).saturating_sub(1);
-        let in_banks = (self.rates.round_trip + out + back + 2.0 * played) / f64::from(banks.max(1));
-        alone + rows as f64 * back.max(played).max(in_banks) + self.short_request()
+        let banks = banks.max(1);
+        let at_once = (AT_ONCE / wire_length(returned)).clamp(1, banks.into()) as f64;
+        let in_banks = self.rates.round_trip + at_once * (out + carried(returned)) + 2.0 * played;
+        let slowest = back.max(played).max(in_banks / f64::from(banks));
+        alone + rows as f64 * slowest + self.short_request()
     }
 
     /// Writing the plan's tables and reading them back.
