@@ -1,5 +1,6 @@
 //! Boards that never answer one certain thing, or never end a packet, behind a link that loses nothing.
 
+use std::thread;
 use std::time::Duration;
 
 use halfrow::link::Candidate;
@@ -146,4 +147,22 @@ fn a_board_that_ends_no_packet_is_told_so_at_once() {
     let told = report.headline();
     assert!(told.contains("without the zero that must follow each of them"), "{told}");
     assert!(Duration::from_secs_f64(report.link.seconds) < Duration::from_secs(5), "{}", report.link.seconds);
+}
+
+/// The second frame takes longer than all that the run leaves out of its times.
+#[test]
+fn times_add_up_to_no_more_than_the_run_if_rows_stop_coming() {
+    let mut rows = 0;
+    let report = judge(&System::TINY, move |toward, packet| {
+        let is_row = toward == Toward::Host && packet.is(Kind::RowOut);
+        rows += usize::from(is_row);
+        if is_row && rows == 12 {
+            thread::sleep(Duration::from_millis(300));
+        }
+        if is_row && rows > 12 { Vec::new() } else { vec![packet] }
+    });
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
+    let checks = report.checks.iter().map(|check| check.seconds);
+    let seconds: f64 = checks.chain(report.frames.iter().map(|frame| frame.seconds)).sum();
+    assert!((0.3..=report.run.seconds).contains(&seconds), "{seconds} of {} s", report.run.seconds);
 }

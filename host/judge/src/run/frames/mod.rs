@@ -2,6 +2,7 @@
 
 pub(super) mod counters;
 mod entry;
+mod frame_clock;
 pub(super) mod kept;
 mod lost_row;
 pub(super) mod observations;

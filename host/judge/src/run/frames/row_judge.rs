@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 use std::iter::Take;
 use std::ops::ControlFlow;
 use std::sync::{Arc, mpsc};
-use std::time::Instant;
 
 use halfrow_model::{Frame, row_signature};
 
 use super::entry::{WrongEntry, flipped_bit};
+use super::frame_clock::FrameClock;
 use super::kept::{Offered, as_found};
 use super::observations::Observations;
 use super::prepared::{PrepareError, Prepared};
@@ -59,8 +59,7 @@ pub(crate) struct RowJudge<'a> {
     timing: FrameTiming,
     progress: &'a dyn Progress,
     unprepared: Option<PrepareError>,
-    /// When the last frame came back whole.
-    since: Instant,
+    clock: FrameClock,
     in_flight: VecDeque<InFlight>,
     /// Frames in flight that must be sent again.
     again: VecDeque<NumberedFrame>,
@@ -87,7 +86,7 @@ impl<'a> RowJudge<'a> {
             timing,
             progress,
             unprepared: None,
-            since: Instant::now(),
+            clock: FrameClock::new(),
             in_flight: VecDeque::new(),
             again: VecDeque::new(),
             frames_done: 0,
@@ -111,9 +110,15 @@ impl<'a> RowJudge<'a> {
         !self.seen.is_right() || self.in_flight.iter().any(|frame| frame.comparison.differences > 0)
     }
 
+    /// Leaves what follows out of the frames' time until the stream begins again.
+    pub(crate) fn pause(&mut self) {
+        self.clock.pause();
+    }
+
     /// Makes the stream begin again with the frames that have not come back whole. Rows that did come back are not judged
     /// twice.
     pub(crate) fn begin_again(&mut self) {
+        self.clock.go_on();
         self.again = self.in_flight.iter().map(|frame| frame.prepared.numbered()).collect();
         (self.rows, self.repeats) = (0, 0);
     }
@@ -184,7 +189,6 @@ impl<'a> RowJudge<'a> {
                 Some(Evidence { index, input, found, expected, missing: missing.clone() })
             });
         }
-        let now = Instant::now();
         let comparison = self.seen.evidence.shorten(comparison, is_whole, budget);
         self.seen.frames.push(FrameReport {
             name,
@@ -198,9 +202,8 @@ impl<'a> RowJudge<'a> {
             comparison,
             rows,
             missing,
-            seconds: now.duration_since(self.since).as_secs_f64(),
+            seconds: self.clock.lap(),
         });
-        self.since = now;
     }
 }
 

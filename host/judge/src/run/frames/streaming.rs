@@ -31,7 +31,6 @@ impl Run<'_> {
         let streamed = self.stream_to_the_end(segment, &mut judge);
         let prepared = judge.finish();
         streamed?;
-        self.findings.checks.begin_lap();
         prepared.map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
         if self.plan.fail_fast && seen.differences() > 0 {
             self.board.drop_rows().during(CheckName::Frames)?;
@@ -43,14 +42,22 @@ impl Run<'_> {
         while let Err(error) = self.board.stream(judge) {
             self.findings.attempt.seen_wrong |= judge.has_found();
             let end = self.interrupted(segment, judge, error);
+            self.end_of_frames(judge);
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();
         }
+        self.end_of_frames(judge);
         self.unless_misconduct(CheckName::Frames, Ok(()))?;
         let attempt = &mut self.findings.attempt;
         attempt.rows_counted += judge.rows;
         attempt.repeats_counted = attempt.repeats_counted.saturating_add(judge.repeats);
         Ok(())
+    }
+
+    /// From now on the time is that of checks again.
+    fn end_of_frames(&mut self, judge: &mut RowJudge<'_>) {
+        judge.pause();
+        self.findings.checks.begin_lap();
     }
 
     fn judge_options(&self, segment: &Segment) -> JudgeOptions {
