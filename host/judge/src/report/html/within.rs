@@ -36,11 +36,11 @@ fn chart(within: &WithinReport) -> Markup {
         let _ = write!(path, "M{left:.1} {HIGH}v-{height:.1}h{width:.1}V{HIGH}z");
     }
     let limit = format!("M{:.1} 0h1v{HIGH}h-1z", across(within.seconds).min(WIDE - 1.0));
-    let caption = format!(
-        "Faults found (of {}) against time on this link, up to {}",
-        grouped(within.faults),
-        grouped(last.found)
-    );
+    let (faults, found) = (grouped(within.faults), grouped(last.found));
+    let [width, height] = within.measured_at;
+    let measured =
+        if within.measured { String::new() } else { format!(", as measured at {width} x {height}") };
+    let caption = format!("Faults found (of {faults}){measured} against time on this link, up to {found}");
     html! {
         figure {
             div.chart.time {

@@ -164,10 +164,6 @@ fn report(
         of: prices.most(part),
     };
     let here = faults.scaled(plan.tables.geometry().height());
-    let steps = coverage::steps(prices, faults, &Selection::least(), f64::INFINITY);
-    let points = steps
-        .iter()
-        .map(|(selection, price)| CoveragePoint { seconds: spent + price, found: here.found(selection) });
     let parts: Vec<_> = prices.parts().into_iter().map(part).collect();
     WithinReport {
         seconds,
@@ -183,6 +179,23 @@ fn report(
         faults: here.count(),
         measured,
         measured_at: faults.size().into(),
-        curve: points.collect(),
+        curve: curve(prices, faults, spent),
     }
+}
+
+/// What more and more parts find, and at last a whole run, which also finds faults that no single part is known to find.
+fn curve(prices: &Prices<'_>, faults: &Faults, spent: f64) -> Vec<CoveragePoint> {
+    let here = faults.scaled(prices.plan().tables.geometry().height());
+    let least = Selection::least();
+    let whole = prices.parts().into_iter().fold(least, |whole, part| whole.with(part, prices.most(part)));
+    let whole = CoveragePoint { seconds: spent + prices.seconds(&whole), found: here.found_by_whole() };
+    let steps = coverage::steps(prices, faults, &Selection::least(), f64::INFINITY);
+    let points = steps
+        .iter()
+        .map(|(selection, price)| CoveragePoint { seconds: spent + price, found: here.found(selection) });
+    let mut curve: Vec<_> = points.filter(|point| point.seconds < whole.seconds).collect();
+    if curve.last().is_none_or(|last| last.found < whole.found) {
+        curve.push(whole);
+    }
+    curve
 }
