@@ -223,6 +223,29 @@ fn of_many_frames_the_first_that_differ_keep_their_maps_and_what_is_left_out_is_
     assert!(page.contains("And 2,600 more frames that were kept."));
 }
 
+/// Each of them has a map, charts and crops, whose markup is longer than their pictures.
+#[test]
+fn hundreds_of_small_frames_that_all_differ_stay_under_four_megabytes() {
+    let frame = |factor| made::sized_frame(64, 16, |row, column| (row * 64 + column) * factor);
+    let (input, right, wrong) = (frame(2741), frame(1873), frame(3307));
+    let (mut report, _) = made::fail();
+    report.frames = (0..400).map(|number| made::equal_frame((number, "builtin:noise"))).collect();
+    for frame in &mut report.frames {
+        frame.comparison = Comparison::of_frames(&right, &wrong);
+    }
+    let kept = |index| Evidence {
+        index,
+        input: input.clone(),
+        found: wrong.clone(),
+        expected: right.clone(),
+        missing: MissingRows::default(),
+    };
+    let page = page(&report, &(0..400).map(kept).collect::<Vec<_>>());
+    assert!(page.len() < 4_000_000, "{} bytes", page.len());
+    assert_eq!(page.matches("<section class=\"frame\">").count(), 400);
+    assert!(page.contains("Map and crops: left out"));
+}
+
 #[test]
 fn a_pass_stays_under_two_megabytes() {
     let (_, mut evidence) = noise();

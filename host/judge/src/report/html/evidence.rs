@@ -14,11 +14,13 @@ use crate::result::{Evidence, FrameReport, Report, little_endian, sha256};
 use crate::verdict::Verdict;
 use crate::words::{count, grouped, percent};
 
-/// Bytes of all pictures together, for a PASS and for anything else. In Base64 they are 1.5 and 3.4 MB, which leaves half a
-/// megabyte of 2 and 4 MB for text and charts.
-const MOST_BYTES: (usize, usize) = (1_100_000, 2_550_000);
-/// Bytes of all maps and crops together. They leave 20 kB for the previews of each of sixteen frames.
-const MOST_OF_DETAILS: usize = MOST_BYTES.1 - 16 * 20_000;
+/// Bytes of all sections together, for a PASS and for anything else. They leave a quarter of a megabyte of 2 and 4 MB for the
+/// rest of the page.
+const MOST_BYTES: (usize, usize) = (1_750_000, 3_750_000);
+/// Bytes of all maps, charts and crops together. They leave 27 kB for the previews of each of sixteen frames.
+const MOST_OF_DETAILS: usize = MOST_BYTES.1 - 16 * 27_000;
+/// Bytes of a section without its pictures and its details.
+const TEXT: usize = 1200;
 /// The widest preview of a wrong frame and of a right one, in pixels.
 const MAX_WIDTH: (usize, usize) = (960, 480);
 /// The most frames that have a section.
@@ -48,14 +50,23 @@ pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup,
         let share = left / (shown.len() - place);
         let none = || html! { p { "Map and crops: left out to keep the page small." } };
         let details = if differs(kept) { details.next().unwrap_or_else(none) } else { Markup::default() };
-        let (section, used) = section(report, kept, &details, share)?;
-        left = left.saturating_sub(used);
+        let section = section(report, kept, &details, in_base64(share.saturating_sub(TEXT)))?;
+        left = left.saturating_sub(length(&section) - length(&details));
         sections.push(section);
     }
     Ok(html! {
         @for section in sections { (section) }
         @if left_out > 0 { section { p { "And " (count(left_out, "more frame")) " that were kept." } } }
     })
+}
+
+fn length(markup: &Markup) -> usize {
+    markup.0.len()
+}
+
+/// How many bytes take `length` bytes in Base64.
+const fn in_base64(length: usize) -> usize {
+    length / 4 * 3
 }
 
 /// The frames that get a section, and how many do not.
@@ -78,34 +89,34 @@ fn differs((_, frame): &FrameEvidence<'_>) -> bool {
     frame.comparison.differences > 0
 }
 
-/// The maps and crops of the first frames that differ, and the bytes of their pictures.
+/// The maps and crops of the first frames that differ, and their bytes.
 fn all_details(shown: &[FrameEvidence<'_>]) -> Result<(impl Iterator<Item = Markup>, usize), EncodingError> {
     let (mut all, mut used) = (Vec::new(), 0);
+    let most = MOST_OF_DETAILS.saturating_sub(shown.len() * TEXT);
     for (kept, _) in shown.iter().filter(|kept| differs(kept)) {
-        let (details, bytes) = details(kept)?;
-        if used + bytes > MOST_OF_DETAILS {
+        let details = details(kept)?;
+        if used + length(&details) > most {
             break;
         }
-        used += bytes;
+        used += length(&details);
         all.push(details);
     }
     Ok((all.into_iter(), used))
 }
 
-/// One frame's section with at most `most_bytes` of previews, and the bytes that they took.
+/// One frame's section with at most `most_bytes` of previews.
 fn section(
     report: &Report,
     shown: &FrameEvidence<'_>,
     details: &Markup,
     most_bytes: usize,
-) -> Result<(Markup, usize), EncodingError> {
+) -> Result<Markup, EncodingError> {
     let (kept, frame) = shown;
     let width = if differs(shown) { MAX_WIDTH.0 } else { MAX_WIDTH.1 };
     let input = pictures::preview(&kept.input, width, most_bytes / 2)?;
     let left = most_bytes - input.as_ref().map_or(0, Picture::len);
     let found = pictures::preview(&as_bright(kept), width, left)?;
-    let used = [&input, &found].into_iter().flatten().map(Picture::len).sum();
-    let markup = html! {
+    Ok(html! {
         section.frame {
             h2 {
                 (mark(wording::frame_outcome(report, frame)))
@@ -118,8 +129,7 @@ fn section(
             }
             (details)
         }
-    };
-    Ok((markup, used))
+    })
 }
 
 /// The frame that came out, developed with the white level of the expected one; samples above its depth become white.
@@ -172,20 +182,17 @@ fn preview(picture: Option<&Picture>, caption: &str) -> Markup {
     }
 }
 
-/// The map, its charts and the crops, and the bytes of their pictures.
-fn details(kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
+/// The map, its charts and the crops.
+fn details(kept: &Evidence) -> Result<Markup, EncodingError> {
     let map = pictures::difference_map(&kept.expected, &kept.found, &kept.missing)?;
-    let mut used = map.len();
     let mut crops = Vec::new();
     for window in pictures::windows(kept, MOST_WINDOWS) {
-        let (markup, bytes) = self::crops(window, kept)?;
-        used += bytes;
-        crops.push(markup);
+        crops.push(self::crops(window, kept)?);
     }
     // The report on the frame need not have the counts by row and column.
     let comparison = kept.compared();
     let side = pictures::side(kept.expected.samples().len());
-    let markup = html! {
+    Ok(html! {
         h3 { "Where it differs" }
         div.map {
             img.samples src=(map.data_uri()) width=(map.width) height=(map.height) alt="Map of differences";
@@ -202,8 +209,7 @@ fn details(kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
             ". The bars count the differences by row and by column."
         }
         @for crop in crops { (crop) }
-    };
-    Ok((markup, used))
+    })
 }
 
 /// What a colour of the map means.
@@ -213,8 +219,8 @@ fn key([red, green, blue]: [u8; 3], meaning: &str) -> Markup {
     }
 }
 
-/// One window in all three frames, and the bytes of its pictures.
-fn crops(window: Window, kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
+/// One window in all three frames.
+fn crops(window: Window, kept: &Evidence) -> Result<Markup, EncodingError> {
     let crops = window.crops(kept)?;
     let Window { around, top, left, height, width } = window;
     let all = [
@@ -223,15 +229,14 @@ fn crops(window: Window, kept: &Evidence) -> Result<(Markup, usize), EncodingErr
         (&crops.expected, "Expected"),
         (&crops.found, "Found"),
     ];
-    let markup = html! {
+    Ok(html! {
         h3 { "Around row " (around.row) ", column " (around.column) ": expected " (around.expected) ", found " (around.found) }
         p {
             "Rows " (top) " to " (top + height - 1) ", columns " (left) " to " (left + width - 1)
             ", raw samples; black is " (crops.range.0) ", white is " (crops.range.1) "."
         }
         div.crops { @for (picture, caption) in all { (figure(picture, ZOOM, caption)) } }
-    };
-    Ok((markup, all.iter().map(|(picture, _)| picture.len()).sum()))
+    })
 }
 
 fn figure(picture: &Picture, zoom: usize, caption: &str) -> Markup {
