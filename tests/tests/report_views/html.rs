@@ -247,6 +247,22 @@ fn hundreds_of_small_frames_that_all_differ_stay_under_four_megabytes() {
 }
 
 #[test]
+fn what_could_not_be_written_or_kept_is_said() {
+    let (mut report, evidence) = made::fail();
+    let causes = vec![Problem::new("io", "no space left on device")];
+    report.lacks =
+        vec![Problem { causes, ..Problem::new("recording-lost", "the recording could not be written") }];
+    report.evidence.left_out = 8;
+    let page = page(&report, &evidence);
+    let lost = "the recording could not be written: no space left on device";
+    for words in [lost, "And 8 more frames for which there was no room in memory."] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(report::wording::summary(&report).lines().any(|line| line.contains(lost)));
+    assert!(report::junit(&report).unwrap().contains(lost));
+}
+
+#[test]
 fn a_pass_stays_under_two_megabytes() {
     let (_, mut evidence) = noise();
     let mut report = made::pass();

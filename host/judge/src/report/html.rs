@@ -33,6 +33,7 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
         (banner(report))
         main {
             (next(report))
+            @for lack in wording::lacks(report) { section { p { "Besides, " (lack) "." } } }
             (facts::not_exercised(report))
             section { h2 { "Checks" } (checks(&report.checks)) }
             (at_speed::section(&report.finding))

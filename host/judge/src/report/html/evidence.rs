@@ -45,6 +45,7 @@ pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup,
     let most_bytes = if report.verdict() == Verdict::Pass { MOST_BYTES.0 } else { MOST_BYTES.1 };
     let (mut details, used) = all_details(&shown)?;
     let mut left = most_bytes.saturating_sub(used);
+    let not_kept = report.evidence.left_out;
     let mut sections = Vec::with_capacity(shown.len());
     for (place, kept) in shown.iter().enumerate() {
         let share = left / (shown.len() - place);
@@ -57,6 +58,7 @@ pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup,
     Ok(html! {
         @for section in sections { (section) }
         @if left_out > 0 { section { p { "And " (count(left_out, "more frame")) " that were kept." } } }
+        @if not_kept > 0 { section { p { "And " (count(not_kept, "more frame")) " for which there was no room in memory." } } }
     })
 }
 

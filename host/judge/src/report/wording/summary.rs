@@ -5,7 +5,7 @@ use crate::result::{Report, Suspect};
 use crate::verdict::Verdict;
 use crate::words::plain;
 
-/// The verdict, every check, what was not exercised and what to do, one line each.
+/// The verdict, every check, what was not exercised, what could not be written and what to do, one line each.
 #[must_use]
 pub fn summary(report: &Report) -> String {
     let mut lines = vec![verdict_line(report)];
@@ -13,8 +13,15 @@ pub fn summary(report: &Report) -> String {
         format!("{:<8} {:<13} {}", mark(check.outcome), check.name, plain(&check.finding.sentence()))
     }));
     lines.extend(not_exercised(report));
+    lines.extend(lacks(report));
     lines.extend(advice(report));
     lines.join("\n")
+}
+
+/// What was asked for and could not be written, one sentence each, without a full stop.
+#[must_use]
+pub fn lacks(report: &Report) -> Vec<String> {
+    report.lacks.iter().map(|lack| plain(&lack.sentence()).into_owned()).collect()
 }
 
 /// The suspects and what to do, one line each.
