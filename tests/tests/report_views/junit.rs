@@ -191,3 +191,19 @@ fn a_frame_s_name_is_no_markup_in_the_table_for_a_ci() {
     let shown = shown(&report);
     assert!(shown.contains(r"| \[a\]\(b\) \`\*\_\~\|&lt;&amp;\\ \(frame 1\,"), "{shown}");
 }
+
+#[test]
+fn what_could_not_be_written_or_kept_is_said() {
+    let (mut report, evidence) = made::fail();
+    let causes = vec![Problem::new("io", "no space left on device")];
+    report.lacks =
+        vec![Problem { causes, ..Problem::new("recording-lost", "the recording could not be written") }];
+    report.evidence.left_out = 8;
+    let page = report::html(&report, &evidence).unwrap();
+    let lost = "the recording could not be written: no space left on device";
+    for words in [lost, "And 8 more frames for which there was no room in memory."] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(report::wording::summary(&report).lines().any(|line| line.contains(lost)));
+    assert!(report::junit(&report).unwrap().contains(lost));
+}

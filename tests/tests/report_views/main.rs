@@ -8,4 +8,5 @@ mod html;
 mod json;
 mod junit;
 mod made;
+mod page_size;
 mod pictures;

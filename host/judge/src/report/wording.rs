@@ -18,8 +18,8 @@ use crate::verdict::{Cause, Verdict};
 use crate::words::{board_name, bytes, count, grouped, percent, plain, span, verb};
 
 pub use coverage::coverage;
-pub(super) use summary::advice;
-pub use summary::{bench_then_next, codes, lacks, of_suspect, summary, what_to_do};
+pub(super) use summary::{advice, lacks};
+pub use summary::{bench_then_next, codes, of_suspect, summary, what_to_do};
 pub use within::within;
 
 /// The word for a check's outcome. Those that call for action are in capitals.

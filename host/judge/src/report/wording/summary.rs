@@ -19,8 +19,7 @@ pub fn summary(report: &Report) -> String {
 }
 
 /// What was asked for and could not be written, one sentence each, without a full stop.
-#[must_use]
-pub fn lacks(report: &Report) -> Vec<String> {
+pub(in crate::report) fn lacks(report: &Report) -> Vec<String> {
     report.lacks.iter().map(|lack| plain(&lack.sentence()).into_owned()).collect()
 }
 
