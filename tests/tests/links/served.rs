@@ -69,7 +69,7 @@ fn a_name_that_is_taken_stays_what_it_is() {
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     assert!(ended.stderr.contains("mine is there already"), "{}", ended.stderr);
     assert_eq!(folder.text("mine"), "precious");
-    // A link that a killed server left behind leads nowhere.
+    // A link that a killed server left behind leads to a terminal that is gone.
     std::os::unix::fs::symlink("/dev/pts/not-there", folder.path().join("old")).unwrap();
     let server = Server::start(&["--link", folder.path().join("old").to_str().unwrap()]);
     assert_eq!(server.end("TERM"), Some(0));

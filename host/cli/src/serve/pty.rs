@@ -15,6 +15,8 @@ use halfrow::link::descriptor::never_block;
 
 /// How often to check whether a host has come.
 const TICK: Duration = Duration::from_millis(5);
+/// Where the system keeps pseudo-terminals.
+const TERMINALS: &str = "/dev/pts";
 
 /// A pseudo-terminal. Dropping it is like pulling the cable of a serial port.
 #[derive(Debug)]
@@ -80,14 +82,16 @@ pub struct Name {
 }
 
 impl Name {
-    /// Links `path` to `target`, which is the caller's. Replaces a link that a killed server left behind: it leads nowhere, or to
-    /// `target`, since the system gives the number of a terminal that is gone to the next one.
+    /// Links `path` to `target`, which is the caller's. Replaces a link that a killed server left behind: it leads to a terminal
+    /// that is gone, or to `target`, since the system gives the number of such a terminal to the next one.
     ///
     /// # Errors
     /// [`ServeError`] when anything else has that name, or the link cannot be made.
     pub fn link(path: &Path, target: &Path) -> Result<Self, ServeError> {
         let door = |source| ServeError::Door { what: format!("the link {}", path.display()), source };
-        let is_left = || !path.exists() || fs::read_link(path).is_ok_and(|led| led == target);
+        // What is away for a moment, as on a disk that is not mounted, is somebody's.
+        let is_gone = |led: &Path| led.starts_with(TERMINALS) && !path.exists();
+        let is_left = || fs::read_link(path).is_ok_and(|led| led == target || is_gone(&led));
         match fs::symlink_metadata(path) {
             Ok(found) if found.is_symlink() && is_left() => fs::remove_file(path).map_err(door)?,
             Ok(_) => return Err(ServeError::Exists(path.to_owned())),
@@ -133,7 +137,13 @@ mod tests {
         }
         symlink(&own, &path).unwrap();
         drop(Name::link(&path, &own).unwrap());
-        symlink(&other, &path).unwrap();
-        assert!(matches!(Name::link(&path, &own), Err(ServeError::Exists(_))));
+        symlink("/dev/pts/not-there", &path).unwrap();
+        drop(Name::link(&path, &own).unwrap());
+        for kept in [&other, &folder.path().join("away")] {
+            symlink(kept, &path).unwrap();
+            assert!(matches!(Name::link(&path, &own), Err(ServeError::Exists(_))));
+            assert_eq!(fs::read_link(&path).unwrap(), *kept);
+            fs::remove_file(&path).unwrap();
+        }
     }
 }
