@@ -53,21 +53,16 @@ impl Failure {
         halfrow_program::codes::explained(codes::problem(self.exit, &self.error))
     }
 
+    /// Why, in words that name the flags of this program.
+    #[must_use]
+    pub fn problem(&self) -> Problem {
+        flags::named_in(codes::problem(self.exit, &self.error))
+    }
+
     /// The document of `command`, which failed with this.
     #[must_use]
     pub fn document(&self, command: &str) -> String {
-        let Self { exit, error, .. } = self;
-        json::without_result(command, *exit, exit.verdict(), &named(codes::problem(*exit, error)))
-    }
-}
-
-/// `problem`, with the flag added after each setting that its words name.
-fn named(problem: Problem) -> Problem {
-    Problem {
-        message: flags::named(&problem.message),
-        remedy: problem.remedy.as_deref().map(flags::named),
-        causes: problem.causes.into_iter().map(named).collect(),
-        ..problem
+        json::without_result(command, self.exit, self.exit.verdict(), &self.problem())
     }
 }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use halfrow_cli::commands::Cli;
 use halfrow_cli::exit::Exit;
 use halfrow_cli::failure::Failure;
-use halfrow_cli::{console, flags, guard, signals};
+use halfrow_cli::{console, guard, signals};
 use halfrow_program::built::Built;
 use halfrow_program::{line, log};
 
@@ -37,11 +37,10 @@ fn program() -> Exit {
 
 /// Says why there is no result: on stderr for people, and as JSON on stdout if the call asked for it.
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
-    let Failure { exit, error, .. } = failure;
-    console::error(&flags::named(&format!("{error:#}")));
+    console::error(&failure.problem());
     console::refer(failure.code().as_deref());
     if let Some(command) = as_json_of {
         console::tell(&failure.document(command));
     }
-    *exit
+    failure.exit
 }

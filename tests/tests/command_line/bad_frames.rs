@@ -216,6 +216,17 @@ fn files_whose_names_are_no_text_are_read() {
     assert!(board.status.code() == Some(2) && said.contains("--board <TARGET>"), "{said}");
 }
 
+#[test]
+fn a_file_s_name_stays_as_it_is_where_it_reads_like_a_setting() {
+    let folder = Folder::new();
+    folder.write("name the bits.pgm", "P5\n128 16\n255\n");
+    let call = small("correct", &["--json", "name the bits.pgm", "--model", "-o", "out.pgm"]);
+    let ended = folder.halfrow(call);
+    let sentence = "name the bits.pgm cannot be used as a frame";
+    assert!(ended.stderr.starts_with(&format!("error: {sentence}: ")), "{}", ended.stderr);
+    assert_eq!(ended.json()["error"]["message"], sentence);
+}
+
 /// A TIFF of 128 x 16 whose directory comes first, as scanners write it, and whose samples are cut off.
 #[test]
 fn a_tiff_without_all_of_its_samples_is_told_once() {
