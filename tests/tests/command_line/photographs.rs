@@ -45,6 +45,20 @@ fn another_size_is_refused_with_both_sizes_and_the_flag() {
     refused(&folder, &small("verify", &["--fit", "--frame", "cmyk.jpg"]), "a CMYK JPEG cannot be used");
 }
 
+/// It cannot be looked at before it is corrected.
+#[test]
+fn a_picture_from_a_pipe_is_fitted_and_told_in_a_line() {
+    let folder = folder();
+    for whom in [&["--model"][..], &["--board", "mock"]] {
+        let call = small("correct", &["/dev/stdin", "--fit", "--overwrite", "-o", "out.pgm"]);
+        let line = "cat turned6.jpg | \"$@\"";
+        let ended = finish(&mut folder.by_shell(line, call.into_iter().chain(whom.iter().copied())));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let told = FITTED.replace("turned6.jpg", "/dev/stdin");
+        assert!(ended.stderr.contains(&told), "{}", ended.stderr);
+    }
+}
+
 #[test]
 fn pictures_are_fitted_and_each_is_told_in_a_line() {
     let folder = folder();

@@ -23,7 +23,9 @@ use crate::document::tell_result;
 use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::settings::Settings;
-use halfrow::frames::{self, Format, Orientation, ReadOptions, Scene, WriteError, parallel, preview};
+use halfrow::frames::{
+    self, Fitting, Format, Orientation, ReadOptions, Scene, WriteError, parallel, preview,
+};
 use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
 use places::{Places, Wanted};
@@ -94,8 +96,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         how: arguments.input.read_options(&geometry, arguments.lens.phase, settings),
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,
+        quiet: context.quiet,
     };
-    job.check(context.quiet).map_err(Failure::call)?;
+    job.check().map_err(Failure::call)?;
     let files = places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)));
     prepare_files(&files).map_err(Failure::call)?;
     let watched = context.progress();
@@ -124,20 +127,29 @@ struct Job<'a> {
     how: ReadOptions,
     scene: Scene,
     chosen: Chosen,
+    /// Whether nothing is said of how pictures are fitted.
+    quiet: bool,
 }
 
 impl Job<'_> {
     /// Checks, before anything is written, that all files exist and have the right size. Says on stderr how pictures are fitted.
-    fn check(&self, quiet: bool) -> anyhow::Result<()> {
+    fn check(&self) -> anyhow::Result<()> {
         let files = self.inputs.iter().filter(|input| input.can_be_read_twice());
         let files: Vec<_> = files.filter_map(|input| Some((input, input.file()?))).collect();
         // Most formats are decoded whole for this.
         let fittings =
             parallel::map(&files, |_, (input, _)| anyhow::Ok(input.rows(&self.how, &self.scene)?.fitting()));
         for ((_, path), fitting) in files.iter().zip(fittings) {
-            tell_fitting(path, fitting?, quiet);
+            tell_fitting(path, fitting?, self.quiet);
         }
         Ok(())
+    }
+
+    /// Says on stderr how the picture `input` was fitted, unless [`Self::check`] could look at it and has said so.
+    fn tell_unchecked(&self, input: &FrameName, fitting: Option<Fitting>) {
+        if let Some(path) = input.file().filter(|_| !input.can_be_read_twice()) {
+            tell_fitting(path, fitting, self.quiet);
+        }
     }
 
     /// Writes the preview of the frame with this index, if previews are asked for.

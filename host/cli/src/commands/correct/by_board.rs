@@ -47,7 +47,8 @@ impl Job<'_> {
         // Of the frames on their way through the board.
         let looks = RefCell::new(VecDeque::new());
         let inputs = self.inputs.iter().map_while(|input| match input.frame(&self.how, &self.scene) {
-            Ok(Decoded { frame, orientation, is_coded, .. }) => {
+            Ok(Decoded { frame, fitting, orientation, is_coded }) => {
+                self.tell_unchecked(input, fitting);
                 looks.borrow_mut().push_back(Look { orientation, is_coded });
                 Some(Arc::new(frame))
             }

@@ -22,7 +22,9 @@ impl Job<'_> {
 
     fn correct_one(&self, places: &Places, index: usize, corrector: &mut Corrector) -> Result<(), Failure> {
         let geometry = self.chosen.tables.geometry();
-        let mut rows = self.inputs[index].rows(&self.how, &self.scene).map_err(Failure::call)?;
+        let input = &self.inputs[index];
+        let mut rows = input.rows(&self.how, &self.scene).map_err(Failure::call)?;
+        self.tell_unchecked(input, rows.fitting());
         let look = Look { orientation: rows.orientation(), is_coded: rows.is_coded() };
         let mut entering = vec![0; geometry.width()];
         let mut numbers = 0..;
