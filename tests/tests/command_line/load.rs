@@ -174,6 +174,23 @@ fn a_board_that_can_never_be_greeted_is_refused_before_anything_is_loaded() {
     }
 }
 
+/// A board for every call may be one that cannot be loaded.
+#[test]
+fn a_general_board_that_cannot_be_greeted_is_passed_over() {
+    let folder = with_loader(WORKS);
+    recorded(&folder, "ulx3s", "00000001");
+    folder.write("settings.toml", "board = 'replay:run.rec'\n");
+    for (settings, variable) in
+        [("/dev/null", Some("mock")), ("/dev/null", Some("pool:ulx3s")), ("settings.toml", None)]
+    {
+        let mut call = command(&folder, &["top.bit", "-v", "--json", "--settings", settings]);
+        let ended = finish(call.envs(variable.map(|board| ("HALFROW_BOARD", board))));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert!(ended.stderr.contains(" is passed over: "), "{}", ended.stderr);
+        assert_eq!(ended.json()["loaded"]["compared"], false);
+    }
+}
+
 #[test]
 fn a_loader_that_fails_is_quoted() {
     let folder = with_loader(NO_BOARD);

@@ -18,8 +18,10 @@ use serde_json::json;
 use self::loader::Call;
 use self::record::Record;
 use super::{Context, Failure, print_or_tell};
-use crate::arguments::board::{refuse_recording, wrong_board};
+use crate::arguments::board::wrong_board;
+use crate::arguments::given::Given;
 use crate::bitstreams::{BOARDS, BitstreamBoard};
+use crate::call_error::CallError;
 use crate::document::result_text;
 use crate::exit::Exit;
 use crate::{console, pool, signals};
@@ -33,6 +35,8 @@ pub(super) use error::LoadError;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     /// The bitstream, as a board's build script leaves it: top.bit, with top.bit.json beside it
     #[arg(value_name = "FILE")]
     file: PathBuf,
@@ -64,11 +68,7 @@ struct Loaded<'a> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let record = record::read(&arguments.file).map_err(Failure::call)?;
     let onto = onto(arguments, record.as_ref()).map_err(Failure::call)?;
-    let board = match (&arguments.board, &context.settings.board) {
-        (None, Some(text)) => Some(text.parse().map_err(Failure::call).map_err(wrong_board)?),
-        (target, _) => target.clone(),
-    };
-    board.as_ref().map_or(Ok(()), check)?;
+    let board = arguments.loaded_board(context)?;
     if let Some(warning) = warning(&arguments.file, record.as_ref()) {
         console::diagnose(&format_args!("warning: {warning}"));
     }
@@ -96,17 +96,39 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     print_or_tell(Exit::Pass, &text(&loaded, report.as_ref()))
 }
 
-/// Checks that the board at `target` can be greeted once it is loaded: then it is too late to refuse the call.
-fn check(target: &Target) -> Result<(), Failure> {
-    if target.kind == pool::POOL {
-        return Err(wrong_board(Failure::call(LoadError::OfPool { target: target.to_string() })));
+impl Arguments {
+    /// The board that is greeted once it is loaded. It is checked here, since it would be too late then.
+    fn loaded_board(&self, context: &Context) -> Result<Option<Target>, Failure> {
+        let target = match (&self.board, &context.settings.board) {
+            (None, None) => return Ok(None),
+            (None, Some(text)) => text.parse().map_err(Failure::call).map_err(wrong_board)?,
+            (Some(target), _) => target.clone(),
+        };
+        if target.kind != pool::POOL && kinds::board_of(&target) != BoardKind::Replay {
+            link::check(&target).map_err(wrong_board)?;
+        }
+        let Some(unfit) = unfit(&target) else { return Ok(Some(target)) };
+        let (settings, keys) = (context.settings_file.as_deref(), context.settings.keys());
+        match self.given.place("board", settings, &keys) {
+            None => Err(wrong_board(Failure::call(unfit))),
+            // It is the board of every call, most of which load nothing.
+            Some(place) => {
+                tracing::info!("{place} is passed over: {unfit}");
+                Ok(None)
+            }
+        }
     }
-    refuse_recording(target)?;
-    link::check(target).map_err(wrong_board)?;
-    if kinds::board_of(target) != BoardKind::Hardware {
-        return Err(wrong_board(Failure::call(LoadError::BuiltIn { target: target.to_string() })));
+}
+
+/// Why what is at `target` is never a board that has just been loaded, if so.
+fn unfit(target: &Target) -> Option<anyhow::Error> {
+    let name = || target.to_string();
+    match kinds::board_of(target) {
+        _ if target.kind == pool::POOL => Some(LoadError::OfPool { target: name() }.into()),
+        BoardKind::Hardware => None,
+        BoardKind::Replay => Some(CallError::RecordingCorrects.into()),
+        _ => Some(LoadError::BuiltIn { target: name() }.into()),
     }
-    Ok(())
 }
 
 /// The board that the call or the record names.
