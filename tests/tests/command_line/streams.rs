@@ -100,6 +100,8 @@ fn writing() -> Vec<Call> {
         small("frames", &["-o", "frames"]),
         small("correct", &["builtin:black", "--model", "-o", "q.pgm"]),
         small("correct", &["builtin:black", "--model", "--json", "-o", "q.pgm"]),
+        small("lens", &["--map", "m.png"]),
+        small("lens", &["--map", "m.png", "--json"]),
         vec!["paper", "fig8", "-o", "paper"],
         vec!["manual", "man"],
     ];

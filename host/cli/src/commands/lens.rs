@@ -10,7 +10,7 @@ use super::{Context, Failure, print};
 use crate::arguments::given::{Decider, Given};
 use crate::arguments::optics::LensArguments;
 use crate::console;
-use crate::document::print_result;
+use crate::document::{print_result, tell_result};
 use crate::exit::Exit;
 use crate::files::prepare_files;
 use halfrow::call::Files;
@@ -50,14 +50,20 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let map = arguments.map.as_ref().zip(figures.used());
     let most = map.map(|(path, used)| write_map(path, &used.residuals, arguments.overwrite)).transpose()?;
     if context.json {
-        let map = most.map(|most| json!({ "file": arguments.map.as_ref().map(|path| path.display().to_string()), "brightest_px": most }));
-        print_result("lens", Exit::Pass, None, figures.json(map.as_ref()))?;
+        let drawn = most.map(|most| json!({ "file": arguments.map.as_ref().map(|path| path.display().to_string()), "brightest_px": most }));
+        let result = figures.json(drawn.as_ref());
+        match drawn {
+            Some(_) => tell_result("lens", Exit::Pass, None, result)?,
+            None => print_result("lens", Exit::Pass, None, result)?,
+        }
         return Ok(Exit::Pass);
     }
-    print(&figures.text())?;
-    if let (Some(path), Some(most)) = (&arguments.map, most) {
-        console::tell(&format!("wrote {}, from 0 (dark) to {most:.3} px (bright)", path.display()));
-    }
+    let Some((path, most)) = arguments.map.as_ref().zip(most) else {
+        print(&figures.text())?;
+        return Ok(Exit::Pass);
+    };
+    console::tell(&figures.text());
+    console::tell(&format!("wrote {}, from 0 (dark) to {most:.3} px (bright)", path.display()));
     Ok(Exit::Pass)
 }
 
