@@ -88,8 +88,12 @@ pub fn ask(what: &str) {
 
 /// Writes a line to stderr, if that takes it, with control characters spelt out.
 pub fn diagnose(what: &dyn Display) {
-    let lines: Vec<_> = what.to_string().split('\n').map(|line| plain(line).into_owned()).collect();
-    diagnose_raw(&format!("{}\n", lines.join("\n")));
+    diagnose_raw(&spelt(&format!("{what}\n")));
+}
+
+/// `text` with all control characters but newlines spelt out.
+fn spelt(text: &str) -> String {
+    text.split('\n').map(plain).collect::<Vec<_>>().join("\n")
 }
 
 /// Like [`diagnose`], without adding a newline, and with control characters kept.
@@ -129,13 +133,14 @@ pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// The writer of the log: stderr, whose failures are ignored.
+/// The writer of the log: stderr, whose failures are ignored. Names of files reach it, so control characters are spelt out; the
+/// log has no colours of its own.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Log;
 
 impl Write for Log {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let _ = io::stderr().lock().write_all(bytes);
+        let _ = io::stderr().lock().write_all(spelt(&String::from_utf8_lossy(bytes)).as_bytes());
         Ok(bytes.len())
     }
 

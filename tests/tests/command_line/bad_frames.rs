@@ -227,6 +227,18 @@ fn a_file_s_name_stays_as_it_is_where_it_reads_like_a_setting() {
     assert_eq!(ended.json()["error"]["message"], sentence);
 }
 
+/// The log warns of samples of 8 bits in a frame of 10, and names the file.
+#[test]
+fn a_file_s_name_does_nothing_to_a_terminal() {
+    let folder = Folder::new();
+    let name = "esc\u{1b}[31m.pgm";
+    folder.write(name, [&b"P5\n128 16\n255\n"[..], &[0; 128 * 16]].concat());
+    let ended = folder.halfrow(small("correct", &[name, "--model", "-o", "out.pgm"]));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stderr.contains("path=esc\\u{1b}[31m.pgm"), "{:?}", ended.stderr);
+    assert!(!ended.stderr.contains('\u{1b}'), "{:?}", ended.stderr);
+}
+
 /// A TIFF of 128 x 16 whose directory comes first, as scanners write it, and whose samples are cut off.
 #[test]
 fn a_tiff_without_all_of_its_samples_is_told_once() {
