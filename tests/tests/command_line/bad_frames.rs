@@ -211,6 +211,13 @@ fn files_whose_names_are_no_text_are_read() {
     let correct =
         folder.command(small("correct", &["-q", "--model", "-o", "out.pgm"])).arg(name).output().unwrap();
     assert_eq!(correct.status.code(), Some(0), "{}", String::from_utf8_lossy(&correct.stderr));
+    // The file of each in a folder keeps its name.
+    let other = OsStr::from_bytes(b"caf\xe8.pgm");
+    std::fs::copy(folder.path().join(name), folder.path().join(other)).unwrap();
+    let mut both = folder.command(small("correct", &["-q", "--model", "-o", "out"]));
+    let both = both.args([name, other]).output().unwrap();
+    assert_eq!(both.status.code(), Some(0), "{}", String::from_utf8_lossy(&both.stderr));
+    assert!([name, other].iter().all(|name| folder.path().join("out").join(name).is_file()));
     let board = folder.command(["info", "--board"]).arg(name).output().unwrap();
     let said = String::from_utf8_lossy(&board.stderr);
     assert!(board.status.code() == Some(2) && said.contains("--board <TARGET>"), "{said}");

@@ -1,6 +1,6 @@
 //! Frames that a user names: built-in frames and files.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -81,12 +81,12 @@ impl FrameName {
     }
 
     /// The name without folder and extension.
-    pub(crate) fn stem(&self) -> anyhow::Result<String> {
+    pub(crate) fn stem(&self) -> anyhow::Result<OsString> {
         match self {
-            Self::Builtin(builtin) => Ok(builtin.name().to_owned()),
+            Self::Builtin(builtin) => Ok(builtin.name().into()),
             Self::File(path) => {
                 let stem = path.file_stem().ok_or_else(|| CallError::Unnamed { path: path.clone() })?;
-                Ok(stem.to_string_lossy().into_owned())
+                Ok(stem.to_owned())
             }
         }
     }

@@ -67,7 +67,11 @@ impl Places {
         }
         let path = |input: &FrameName| match is_file {
             true => Ok(place.to_owned()),
-            false => Ok(place.join(format!("{}.{format}", input.stem()?))),
+            false => {
+                let mut name = input.stem()?;
+                name.push(format!(".{format}"));
+                Ok(place.join(name))
+            }
         };
         inputs.iter().map(path).collect()
     }
