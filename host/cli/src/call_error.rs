@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use halfrow::frames::Format;
+use halfrow::verdict::StoppedBy;
 
 /// A call that cannot be carried out as it stands. Options are named as they are written on the command line.
 #[derive(Debug, Error)]
@@ -95,6 +96,9 @@ pub(crate) enum CallError {
          (https://r0k.us/graphics/kodak), or name items that need none: {others}"
     )]
     PhotographsMissing { needing: String, others: String },
+    /// Somebody stopped a command that judges nothing.
+    #[error("{by} before it was done; run again")]
+    Stopped { by: StoppedBy },
     /// The input could not be read as a whole.
     #[error("cannot read {}; check that it exists and that you may read it", path.display())]
     Unreadable { path: PathBuf, source: io::Error },

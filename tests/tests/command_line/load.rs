@@ -287,6 +287,7 @@ fn a_signal_ends_the_loader_too() {
     running.send("INT");
     let ended = running.end();
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+    assert!(ended.stderr.contains("may hold half of the bitstream; load it again\n"), "{}", ended.stderr);
     let child = folder.text("child");
     wait_until("the loader's child to end", || !is_running(child.trim()));
 }

@@ -90,6 +90,19 @@ fn a_run_that_is_to_outlive_its_terminal_does() {
     assert_eq!(running.end().code, Some(130));
 }
 
+#[test]
+fn a_command_that_judges_nothing_says_so_when_it_is_stopped() {
+    let folder = Folder::new();
+    let running = started(&folder, ["correct", "builtin:noise", "--board", SLOW, "-o", "out"]);
+    // It makes the folder once it has opened its board.
+    until_there_is(folder.path(), |name| name == "out");
+    running.send("INT");
+    let ended = running.end();
+    assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+    let said = "error: stopped by hand before it was done; run again\n";
+    assert!(ended.stderr.contains(said), "{}", ended.stderr);
+}
+
 /// Frames of the paper's size, which take a while to write.
 pub(crate) const LARGE: [&str; 9] = [
     "correct",

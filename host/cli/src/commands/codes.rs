@@ -51,6 +51,7 @@ codes::codes! {
         NoPhotograph => "photographs-missing",
         PhotographTwice [first, second] => "photograph-given-twice",
         PhotographsMissing => "paper-photographs-missing",
+        Stopped [by] => "command-stopped",
         Unreadable [path] => "input-unreadable",
         StationMissing [path] => "station-missing",
         StationNotStarted [path] => "station-not-started",
@@ -67,6 +68,8 @@ codes::codes! {
         LoaderNotStarted [call] => "loader-not-started",
         LoaderFailed [call, said] => "loader-failed",
         LoaderLate [call, deadline, said] => "loader-late",
+        Stopped [call, by] => "loading-stopped",
+        NotAwaited [by] => "loaded-board-not-awaited",
         OtherBuild [target, board, file] => "board-of-other-build",
     }
     SettingsError {

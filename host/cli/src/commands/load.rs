@@ -29,7 +29,7 @@ use halfrow::board::{Board, BoardError, OpenOptions, Stop, WhenHeld};
 use halfrow::link::{self, Class, kinds};
 use halfrow::result::BoardReport;
 use halfrow::target::{BoardKind, Target};
-use halfrow::verdict::StoppedBy;
+use halfrow::verdict::{Cause, StoppedBy};
 
 pub(super) use error::LoadError;
 
@@ -180,7 +180,7 @@ fn greeted(
             Err(failed) => failed,
         };
         if let Some(by) = stopped() {
-            return Err(BoardError::Stopped(by).into());
+            return Err(Failure::of(Cause::Stopped(by).into(), LoadError::NotAwaited { by }));
         }
         match next {
             Next::Never => return Err(failure),

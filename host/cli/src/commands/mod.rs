@@ -34,6 +34,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::progress::{self, ChildOutput};
 use crate::settings::Settings;
+use halfrow::board::BoardError;
 use halfrow::progress::Progress;
 use halfrow::reference;
 
@@ -120,7 +121,7 @@ impl Cli {
             return Err(Failure::call(CallError::NoJson { command }));
         }
         self.carried_out(&context).map_err(|failure| {
-            self.placed(failure, context.settings_file.as_deref(), &context.settings.keys())
+            self.placed(self.unjudged(failure), context.settings_file.as_deref(), &context.settings.keys())
         })
     }
 
@@ -132,6 +133,17 @@ impl Cli {
                 Failure { error: failure.error.context(format!("{place} cannot be used")), ..failure }
             }
             None => failure,
+        }
+    }
+
+    /// `failure`, without a word about judging if the command judges nothing.
+    fn unjudged(&self, failure: Failure) -> Failure {
+        let judges = matches!(self.0.command, Command::Verify(_) | Command::Soak(_) | Command::Paper(_));
+        match failure.error.downcast_ref() {
+            Some(&BoardError::Stopped(by)) if !judges => {
+                Failure { error: CallError::Stopped { by }.into(), ..failure }
+            }
+            _ => failure,
         }
     }
 

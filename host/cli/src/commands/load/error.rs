@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitStatus;
 
+use halfrow::verdict::StoppedBy;
 use thiserror::Error;
 
 /// A bitstream that is not loaded.
@@ -60,6 +61,14 @@ pub(in crate::commands) enum LoadError {
          give it longer with --deadline"
     )]
     LoaderLate { call: String, deadline: f64, said: String },
+    /// Somebody stopped the program that loads the bitstream.
+    #[error("{by} while `{call}` ran, so the FPGA may hold half of the bitstream; load it again")]
+    Stopped { call: String, by: StoppedBy },
+    /// Somebody stopped the wait for the loaded board.
+    #[error(
+        "{by} when the bitstream was loaded and the board had not answered yet; load it again to compare its build"
+    )]
+    NotAwaited { by: StoppedBy },
     /// The board runs another bitstream than the one that was loaded.
     #[error(
         "{target} runs build {board}, but the file that was loaded is build {file}: it is another board than the \

@@ -17,9 +17,8 @@ use signal_hook::consts::SIGCHLD;
 use super::LoadError;
 use crate::failure::Failure;
 use crate::progress::ChildOutput;
-use halfrow::board::BoardError;
 use halfrow::report::shell_word;
-use halfrow::verdict::StoppedBy;
+use halfrow::verdict::{Cause, StoppedBy};
 
 /// The program.
 pub(super) const PROGRAM: &str = "openFPGALoader";
@@ -78,7 +77,7 @@ impl Call {
         let (status, said) = loader.end(told);
         let call = self.line();
         match (end, status) {
-            (End::By(by), _) => Err(BoardError::Stopped(by).into()),
+            (End::By(by), _) => Err(Failure::of(Cause::Stopped(by).into(), LoadError::Stopped { call, by })),
             (End::Late, _) => {
                 let deadline = deadline.as_secs_f64();
                 Err(Failure::error(LoadError::LoaderLate { call, deadline, said }))
