@@ -271,7 +271,7 @@ fn a_board_that_is_silent_is_waited_for_no_longer_than_the_deadline() {
 fn a_record_that_has_no_end_is_refused() {
     let folder = with_loader(WORKS);
     std::os::unix::fs::symlink("/dev/zero", folder.path().join("top.bit.json")).unwrap();
-    refused(&folder, &["top.bit", "--onto", "ulx3s"], 2, "frame-file-is-no-regular-one");
+    refused(&folder, &["top.bit", "--onto", "ulx3s"], 2, "input-is-no-regular-file");
     fs::remove_file(folder.path().join("top.bit.json")).unwrap();
     folder.write("top.bit.json", vec![b' '; (1 << 20) + 1]);
     refused(&folder, &["top.bit", "--onto", "ulx3s"], 2, "input-unreadable");

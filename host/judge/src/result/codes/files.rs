@@ -204,7 +204,7 @@ codes! {
     ;
     GeometryError => "geometry-impossible"
     ;
-    NotRegular [path] => "frame-file-is-no-regular-one"
+    NotRegular [path] => "input-is-no-regular-file"
     ;
     TableError => "row-factors-impossible"
     ;
