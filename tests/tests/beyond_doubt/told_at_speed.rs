@@ -60,6 +60,18 @@ fn a_clock_too_many_casts_no_suspicion_on_samples_that_are_right() {
     }
 }
 
+/// docs/full-speed.md: if the row is right when streamed, the suspect is a path that fails at the full pixel clock. A row of few
+/// differing samples, or one with a whole bit inverted, has other explanations as well, which the streamed frame refutes.
+#[test]
+fn what_the_streamed_frame_refutes_is_no_suspect() {
+    for fault in ["warm-bit,after=0,row=5,bit=0", "slow-path,bit=0,one-in=1", "slow-path,bit=5,one-in=2"] {
+        let report = System::TINY.judge(&format!(",fault={fault}"));
+        assert!(report.headline().contains("the same frame is right"), "{fault}: {}", report.headline());
+        let defects: Vec<_> = report.suspects.iter().map(|suspect| &suspect.defect).collect();
+        assert!(matches!(defects[..], [Defect::OnlyAtSpeed { .. }]), "{fault}: {defects:?}");
+    }
+}
+
 /// The mock flips this bit of the row's first output.
 #[test]
 fn the_row_that_was_kept_is_told_with_its_samples() {
