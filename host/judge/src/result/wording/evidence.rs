@@ -64,8 +64,11 @@ fn samples(differing: usize, explained: usize, contradicted: usize, others: usiz
             1 => ", but would change one that is right".to_owned(),
             more => format!(", but would change {} that are right", grouped(more)),
         };
-        let differing = count(differing, "differing sample");
-        return format!("the model reproduces {} of the {differing} examined{rest}", grouped(explained));
+        let share = match (explained, differing) {
+            (1, 1) => "the one differing sample".to_owned(),
+            _ => format!("{} of the {}", grouped(explained), count(differing, "differing sample")),
+        };
+        return format!("the model reproduces {share} examined{rest}");
     }
     let all = match differing {
         1 => {
