@@ -390,3 +390,11 @@ fn a_board_whose_trap_keeps_nothing_breaks_a_rule_also_where_no_time_is_spent_at
     assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     assert_eq!(failed_check(&report), Some(CheckName::Rules));
 }
+
+/// Only the widest rows of the rules need address line 7: 128 samples and more.
+#[test]
+fn samples_that_differ_in_rows_of_the_rules_are_told_with_the_size_of_these() {
+    let report = judge_by_plan(&plan(), open("mock,fault=stuck-address,bit=7,value=1"));
+    let told = "samples differ in rows that the rules were tried with (2048 x 1); the suspect is line memory";
+    assert!(report.headline().contains(told), "{}", report.headline());
+}

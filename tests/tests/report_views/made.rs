@@ -120,6 +120,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
         samples: 2_076_160,
         differing_frames: 1,
         frames: 2,
+        tried: None,
         others: 0,
         short: None,
         suspect: Some(Box::new(defect.clone())),

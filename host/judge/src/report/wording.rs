@@ -151,7 +151,7 @@ pub fn facts(report: &Report) -> String {
 /// What stands below the headline of a FAIL or an ERROR: the same, without what the headline says of frames and samples.
 pub(super) fn facts_below(report: &Report) -> String {
     match report.finding {
-        Finding::SamplesDiffer { .. } => further_facts(report),
+        Finding::SamplesDiffer { tried: None, .. } => further_facts(report),
         _ => facts(report),
     }
 }

@@ -89,6 +89,7 @@ fn of_the_board() -> [Finding; 19] {
             samples: 33_177_600,
             differing_frames: 2,
             frames: 16,
+            tried: None,
             suspect: Some(defect()),
             others: 0,
             short: None,

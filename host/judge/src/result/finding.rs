@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
     EqualAtSpeed, FlippedBit, LateRows, MissingRow, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition,
-    Rule, Shortfall,
+    RowsTried, Rule, Shortfall,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -75,8 +75,7 @@ pub enum Finding {
     },
     /// All frames that the board made on its own at the full pixel clock are equal to the reference.
     EqualAtSpeed(EqualAtSpeed),
-    /// All frames that the board made on its own are equal to the reference, but some had pauses, so they were not at the
-    /// full pixel clock.
+    /// All frames that the board made on its own are right, but not at the full pixel clock: some had pauses.
     PausedAtSpeed {
         /// Frames.
         frames: u32,
@@ -165,6 +164,9 @@ pub enum Finding {
         differing_frames: usize,
         /// Of so many.
         frames: usize,
+        /// The rows of the rules that they are in; none if they are in streamed frames.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        tried: Option<Box<RowsTried>>,
         /// The likeliest cause.
         suspect: Option<Box<Defect>>,
         /// Other causes that explain all of it as well.

@@ -139,6 +139,15 @@ pub enum Answer {
     Nothing {},
 }
 
+/// The rows that a rule was tried with, up to the one that differs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RowsTried {
+    /// Samples of each.
+    pub width: usize,
+    /// How many.
+    pub height: usize,
+}
+
 /// Something that a board tells of a row, and that is not what it must be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "of", rename_all = "kebab-case")]

@@ -66,8 +66,20 @@ pub fn sentence(finding: &Finding) -> String {
             "the tables read back right, but the board finds another CRC when it commits them".to_owned()
         }
         Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
-        Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect, others, short } => {
-            let differ = samples_differ((*differences, *samples), (*differing_frames, *frames));
+        Finding::SamplesDiffer {
+            differences,
+            samples,
+            differing_frames,
+            frames,
+            tried,
+            suspect,
+            others,
+            short,
+        } => {
+            let differ = match tried {
+                Some(rows) => rules::samples_differ((*differences, *samples), rows),
+                None => samples_differ((*differences, *samples), (*differing_frames, *frames)),
+            };
             format!("{differ}; {}", suspicion(suspect.as_deref(), *others, *short))
         }
         Finding::CounterWrong { counter, counted, right, rule } => {

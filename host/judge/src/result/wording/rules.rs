@@ -2,12 +2,23 @@
 
 use halfrow_protocol::message::RefusalCode;
 
-use crate::result::{Answer, RowPart, Rule};
-use crate::words::count;
+use crate::result::{Answer, RowPart, RowsTried, Rule};
+use crate::words::{count, grouped, verb};
 
 /// What to do about any broken rule.
 pub(super) const REMEDY: &str = "Check how the board decodes requests, and try it with the conformance tests; \
                                  protocol/WIRE.md says what it must refuse.";
+
+/// How many of the samples differ, in the rows that a rule was tried with.
+pub(super) fn samples_differ((differences, samples): (usize, usize), rows: &RowsTried) -> String {
+    let &RowsTried { width, height } = rows;
+    format!(
+        "{} of {} {} in rows that the rules were tried with ({width} x {height})",
+        grouped(differences),
+        count(samples, "sample"),
+        verb(differences, "differ")
+    )
+}
 
 /// What the board must do, and what it did.
 pub(super) fn broken(rule: Rule, request: &str, right: &Answer, found: &Answer) -> String {

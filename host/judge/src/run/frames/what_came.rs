@@ -98,6 +98,7 @@ impl Run<'_> {
             samples,
             differing_frames: differing,
             frames,
+            tried: None,
             suspect: suspects.first().map(|suspect| Box::new(suspect.defect.clone())),
             others: suspects.first().map_or(0, Suspect::others),
             short: suspects.first().and_then(Suspect::shortfall),

@@ -39,7 +39,7 @@ use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Datapath, Given, Had, Response, RowTiming, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
-use crate::result::{Answer, CheckName, Counter, Doubt, Finding, RowPart, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Finding, RowPart, RowsTried, Rule};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
@@ -267,11 +267,14 @@ impl<'a, 'run> Rules<'a, 'run> {
             let suspects = self.run.diagnose_rows(seen, "rules", *frame);
             if let Some(first) = suspects.first().filter(|first| first.is_known()) {
                 let compared = Comparison::of_frames(&seen.evidence.expected, &seen.evidence.found);
+                let expected = &seen.evidence.expected;
+                let tried = RowsTried { width: expected.width(), height: expected.height() };
                 let finding = Finding::SamplesDiffer {
                     differences: compared.differences,
                     samples: compared.samples,
                     differing_frames: 1,
                     frames: 1,
+                    tried: Some(Box::new(tried)),
                     suspect: Some(Box::new(first.defect.clone())),
                     others: first.others(),
                     short: first.shortfall(),

@@ -158,18 +158,18 @@ impl Sessions {
             if left.elapsed() > patience {
                 let seconds = patience.as_secs_f64();
                 let away = Finding::BoardStayedAway { reason: Box::new(reason), seconds };
-                return Err(kept_from_us.unwrap_or_else(|| End::error(*check, *cause, away)));
+                return Err(kept_from_us.map_or_else(|| End::error(*check, *cause, away), |end| *end));
             }
             std::thread::sleep(TICK);
         }
     }
 
     /// Opens the board. The error says what keeps a board that exists from this run; it is none if there is no board.
-    fn try_open(&mut self, spent: Duration) -> Result<Board, Option<End>> {
+    fn try_open(&mut self, spent: Duration) -> Result<Board, Option<Box<End>>> {
         let reopen = self.reopen.as_mut().ok_or(None)?;
         let link = reopen().map_err(|error| {
             tracing::debug!("not there yet: {error}");
-            not_opened(&*error)
+            not_opened(&*error).map(Box::new)
         })?;
         // A board that never lost power must not take this HELLO for one that it has already answered, nor this host a late
         // refusal for the answer to it.
@@ -180,7 +180,7 @@ impl Sessions {
         let options = OpenOptions { nonce, sequence, stop, ..self.options.clone() };
         Board::open_any(link, &options).map_err(|OpenFailed { error, .. }| {
             tracing::debug!("not there yet: {error}");
-            error.shows_device().then(|| End::board(CheckName::Identity, &error))
+            error.shows_device().then(|| Box::new(End::board(CheckName::Identity, &error)))
         })
     }
 
