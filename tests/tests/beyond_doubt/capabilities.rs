@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use halfrow::board::{Board, OpenFailed, OpenOptions};
+use halfrow::result::examples;
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_model::{MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
@@ -100,6 +101,17 @@ fn a_board_that_cannot_be_is_refused_by_whoever_opens_it() {
         assert_eq!(error.cause(), Cause::Refused, "{claim}: {error}");
         assert!(error.to_string().contains(&format!("the board says {claim}, but ")), "{error}");
     }
+}
+
+/// What is explained of a code is what a run with it shows.
+#[test]
+fn the_example_of_an_impossible_capability_has_the_verdict_of_a_run() {
+    let report = judge_claims(&System::TINY, |board| board.latency = 33);
+    let examples = examples::findings_with_verdicts();
+    let example = examples.iter().find(|(_, finding)| finding.code() == report.finding.code());
+    let (verdict, finding) = example.unwrap();
+    assert_eq!(*verdict, Some(report.verdict()), "{}", report.headline());
+    assert_eq!(finding.technician(), None);
 }
 
 /// The sizes that a board may claim are those that the datapath allows.

@@ -68,16 +68,11 @@ fn right() -> Vec<(Option<Verdict>, Finding)> {
     found.into_iter().map(|finding| ((!is_left_out(&finding)).then_some(Verdict::Pass), finding)).collect()
 }
 
-fn of_the_board() -> [Finding; 19] {
+fn of_the_board() -> [Finding; 18] {
     let defect = || Box::new(Defect::LineMemoryDataStuck { bit: 5, value: 1 });
     let account = Account::Words { wrong: 40, explained: 40, others: 0 };
     let of_table = Box::new(Defect::TableDataStuck { table: Memory::Rows, weight: None, bit: 7, value: 1 });
     [
-        Finding::CapabilityImpossible {
-            capability: "latency".to_owned(),
-            value: 40,
-            legal: "L is 3 to 32".to_owned(),
-        },
         Finding::EchoWrong {},
         Finding::TableReadsWrong { defect: of_table, account },
         Finding::TableCrcWrong {},
@@ -176,7 +171,7 @@ fn on_entry_and_at_speed() -> [Finding; 6] {
     ]
 }
 
-fn unjudged() -> [Finding; 13] {
+fn unjudged() -> [Finding; 14] {
     let reason = Problem::new("no-answer", "no answer to ECHO in 8 tries; check that the board is powered");
     [
         Finding::RowLostOnce { row: 3, frame: 2 },
@@ -198,6 +193,11 @@ fn unjudged() -> [Finding; 13] {
             reason: reason.clone().into(),
         })),
         Finding::NothingJudged {},
+        Finding::CapabilityImpossible {
+            capability: "latency".to_owned(),
+            value: 40,
+            legal: "L is 3 to 32".to_owned(),
+        },
         Finding::DatapathUnknown { datapath: 3, known: 1 },
         Finding::HardwareRequired { board: BoardKind::Mock },
         Finding::BoardExchanged {},

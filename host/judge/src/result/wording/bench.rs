@@ -21,8 +21,7 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         | Finding::ClockNotAsNamed { .. }
         | Finding::RowSwallowed { .. }
         | Finding::RowCopyDiffers { .. } => TIMING,
-        Finding::CapabilityImpossible { .. }
-        | Finding::RowsEnteredChanged { .. }
+        Finding::RowsEnteredChanged { .. }
         | Finding::EntryMiscounted { .. }
         | Finding::MiscountedAtSpeed { .. }
         | Finding::LatencyWrong(_)
@@ -61,6 +60,7 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         | Finding::WrongOverDoubtfulLink { .. }
         | Finding::SecondLookBrokenOff(_)
         | Finding::NothingJudged {}
+        | Finding::CapabilityImpossible { .. }
         | Finding::DatapathUnknown { .. }
         | Finding::HardwareRequired { .. }
         | Finding::BoardExchanged {}
