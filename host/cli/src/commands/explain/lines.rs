@@ -128,10 +128,10 @@ const LINES: &[Line] = &[
     },
     Line {
         word: "UNSAVED",
-        meaning: "The station could not keep the result of a run, so there is none, and no verdict.",
+        meaning: "The first line of `halfrow-station run` without --json: the station could not keep the result of a run, so there is none, and no verdict.",
         fault: "the station's: its disk, or the folder or the database there",
         act: "Do what the line says, then test the board again.",
-        place: "the first line of `halfrow-station run`",
+        place: "`error` of `halfrow-station run`, with the code `run-unsaved`",
     },
     Line {
         word: "explain",
