@@ -48,8 +48,34 @@ fn an_explanation_is_that_of_the_run_that_had_the_code() {
     assert_eq!(told[1]["of"], "defect");
     let bench = told[1]["do"][0].as_str().unwrap().strip_prefix("At the bench: ").unwrap();
     assert_eq!(bench, run["suspects"][0]["technician"].as_str().unwrap());
-    assert!(told[2]["fault"].as_str().unwrap().starts_with("not the board's"), "{}", told[2]);
+    assert!(told[2]["fault"].as_str().unwrap().starts_with("no verdict on the board"), "{}", told[2]);
     assert_eq!(told[3]["verdict"], "PASS");
+}
+
+/// docs/running.md says of each what leaves it open: of these, no frame that is streamed.
+#[test]
+fn nobody_is_sent_to_stream_frames_for_what_no_streamed_frame_tests() {
+    let codes = [
+        "full-speed",
+        "named-clock",
+        "unseen-clock",
+        "table-change-at-speed",
+        "rules",
+        "further-records",
+        "counters-of-poor-links",
+        "same-board",
+        "camera-pins",
+    ];
+    let told = explained(&codes).into_iter().filter(|it| it["of"] == "not-exercised");
+    let told: Vec<_> = told.collect();
+    assert_eq!(told.len(), codes.len());
+    for it in told {
+        let act = it["do"][0].as_str().unwrap_or_default();
+        assert!(act.ends_with('.') && !act.contains("built-in frames"), "{it}");
+        assert!(!it["fault"].as_str().unwrap().contains("frames"), "{it}");
+    }
+    let bits = &explained(&["input-bits"])[0]["do"][0];
+    assert!(bits.as_str().is_some_and(|act| act.contains("built-in frames")), "{bits}");
 }
 
 /// The other words of a report, each as the list of its kind has it.

@@ -16,6 +16,7 @@ use known::{Explanation, MEANINGS, known};
 mod acts;
 mod known;
 mod lines;
+mod unexercised;
 
 /// How similar a code must be to an unknown one, 0 to 1, to be suggested.
 const LIKENESS: f64 = 0.8;

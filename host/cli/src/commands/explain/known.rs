@@ -9,7 +9,7 @@ use halfrow::words::sentence;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{acts, lines};
+use super::{acts, lines, unexercised};
 use crate::commands::codes;
 
 /// Each code with its meaning and its error's message, from the comments of the sources.
@@ -69,7 +69,10 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
         });
     }
     for part in examples::not_exercised() {
-        add(&part.tagged().0, &|it| it.sentence = part.words());
+        add(&part.tagged().0, &|it| {
+            (it.sentence, it.fault) = (part.words(), unexercised::fault(&part));
+            it.acts = vec![unexercised::act(&part).to_owned()];
+        });
     }
     // A code may have the same name as a check or a fault.
     let mut all: BTreeMap<String, Vec<Explanation>> = BTreeMap::new();
@@ -141,11 +144,9 @@ fn of_entry(entry: &Value) -> Explanation {
             fault(Some(Verdict::Fail)),
             "`suspects` of a result, and `suspect` of its finding",
         ),
-        Some("not-exercised") => (
-            Some(Verdict::Pass),
-            "nobody's: the run did not test it; stream other frames, or all built-in ones",
-            "`not_exercised` of a result",
-        ),
+        Some("not-exercised") => {
+            (Some(Verdict::Pass), "nobody's: the run did not test it", "`not_exercised` of a result")
+        }
         Some("station-error") => (
             None,
             "not the board's: the station's, its settings', its plant's or the command's",
@@ -153,7 +154,7 @@ fn of_entry(entry: &Value) -> Explanation {
         ),
         _ => (
             None,
-            "not the board's: exit code 2 if the command or a file is wrong, otherwise ERROR (most often exit code 3)",
+            "no verdict on the board: exit code 2 if the command or a file is wrong, otherwise ERROR (most often exit code 3)",
             "`error` of a result and its `causes`; `finding`, where it ends a run",
         ),
     };
@@ -173,7 +174,10 @@ fn fault(verdict: Option<Verdict>) -> &'static str {
     match verdict {
         Some(Verdict::Pass) => "nobody's: it is as it must be",
         Some(Verdict::Fail) => "the board's",
-        Some(Verdict::Error) => "the link's, the station's or the command's: the board was not judged",
+        Some(Verdict::Error) => {
+            "no verdict on the board, which was not judged: look at the link, the station and the command, and at what the board \
+             says of itself"
+        }
         None => "nobody's: it only says what was not done",
     }
 }
