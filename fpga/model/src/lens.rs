@@ -59,8 +59,8 @@ impl fmt::Display for Short {
 pub enum LensError {
     /// An image radius outside [`MIN_RADIUS`] to [`MAX_RADIUS`].
     #[error(
-        "an image radius of {} pixels is outside {min} to {max:e}; give the distance in pixels from the optical \
-         centre to where a ray at 90 degrees lands, or a focal length, pitch and field of view that lead there",
+        "an image radius of {} pixels is outside {min} to {max:e}; give the pixels from the axis to where a ray at \
+         90 degrees lands, or a focal length, pitch and field of view that lead there",
         Short(*.0),
         min = MIN_RADIUS,
         max = MAX_RADIUS
