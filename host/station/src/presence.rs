@@ -103,8 +103,8 @@ fn place(board: &Target, devices: &Path) -> Option<PathBuf> {
 
 /// The channel of a chip that a `usb:` name says its board is at: its interface's number there, from 0.
 fn channel(board: &Target) -> Option<u32> {
-    let (_, letter) = board.options.iter().find(|(key, _)| key == "channel")?;
-    let place = ["a", "b", "c", "d"].iter().position(|known| known == letter)?;
+    let letter = board.option("channel")?;
+    let place = ["a", "b", "c", "d"].iter().position(|known| *known == letter)?;
     u32::try_from(place).ok()
 }
 
