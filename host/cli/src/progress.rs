@@ -182,7 +182,7 @@ impl Minutes {
 /// How far a soak has come that has been watched for `time`.
 fn soak_line(soaked: &Soaked, time: Duration) -> String {
     let Soaked { frames, wrong, .. } = *soaked;
-    let equal = if wrong == 0 { "all equal".to_owned() } else { format!("{} DIFFER", grouped(wrong)) };
+    let equal = if wrong == 0 { "all equal".to_owned() } else { format!("{} WRONG", grouped(wrong)) };
     let mut words = format!("{}: {}, {equal}", span(soaked.time.as_secs_f64()), count(frames, "frame"));
     let (seconds, share) = (time.as_secs_f64(), soaked.share());
     if seconds > 0.0 {
@@ -302,6 +302,6 @@ mod tests {
             soak_line(&soaked(0), hour_and_twelve),
             "1 h 12 min: 199,872 frames, all equal, 46.3 frames/s, 6 h 48 min left"
         );
-        assert!(soak_line(&soaked(2), hour_and_twelve).contains("199,872 frames, 2 DIFFER"));
+        assert!(soak_line(&soaked(2), hour_and_twelve).contains("199,872 frames, 2 WRONG"));
     }
 }

@@ -44,7 +44,7 @@ pub struct Soaked {
     pub time: Duration,
     /// Frames judged.
     pub frames: u64,
-    /// The frames among them that differ.
+    /// The frames among them that differ, or of which the board counts something wrong.
     pub wrong: u64,
     /// The planned length.
     pub of: SoakLength,

@@ -1,14 +1,17 @@
 //! What is told of frames that a board makes on its own: no more than was seen of them.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use halfrow::link;
+use halfrow::progress::Event;
 use halfrow::report;
 use halfrow::result::{
     BurstCount, CheckName, Defect, Finding, MadeAs, NotExercised, Outcome, Repetition, Report, SoakLength,
     Suspect,
 };
-use halfrow::run::{AtSpeed, Part, Plan, Selection};
+use halfrow::run::{AtSpeed, Part, Plan, RunOptions, Selection, verify};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{FrameRecord, Records, TrappedRow};
@@ -263,4 +266,21 @@ fn a_host_that_has_many_records_to_judge_does_not_fall_silent() {
     let asked = asked.lock().unwrap();
     let most = asked.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).max();
     assert!(most.is_some_and(|most| most <= 100), "{asked:?}");
+}
+
+/// Every frame of this board has a row that pauses for a clock, which its record says and its signature does not.
+#[test]
+fn frames_with_wrong_counts_are_told_as_wrong_while_they_are_judged() {
+    let told_wrong = AtomicU64::new(0);
+    let told = |event: Event| {
+        if let Event::Soaked(soaked) = event {
+            told_wrong.store(soaked.wrong, Ordering::Relaxed);
+        }
+    };
+    let at_speed = AtSpeed::Soak(SoakLength::Frames { frames: 100 });
+    let plan = Plan { at_speed, fail_fast: false, ..System::TINY.plan() };
+    let board = link::open(&"mock,fault=hidden-pause".parse().unwrap()).unwrap();
+    let report = verify(&plan, board, &RunOptions::default(), &told).unwrap().report;
+    assert_eq!(report.soak.unwrap().miscounted, 100);
+    assert_eq!(told_wrong.into_inner(), 100);
 }

@@ -86,8 +86,8 @@ impl Account {
         self.report.wrong += new.wrong;
         self.report.miscounted += new.miscounted;
         self.report.chart.add(time, new);
-        let SoakReport { frames, wrong, asked, .. } = self.report;
-        Soaked { time, frames, wrong, of: asked }
+        let SoakReport { frames, wrong, miscounted, asked, .. } = self.report;
+        Soaked { time, frames, wrong: wrong + miscounted, of: asked }
     }
 
     /// Keeps `end`, the difference in the burst that was just played, seen at `at` on the run's clock.
