@@ -1,10 +1,10 @@
 //! `halfrow load`, with scripts in the place of openFPGALoader.
 
 use std::collections::BTreeSet;
-use std::fs;
+use std::fs::{self, File};
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{Ended, Folder, Running, finish, halfrow};
@@ -312,4 +312,14 @@ fn the_boards_that_have_bitstreams_are_listed_with_what_to_load() {
     }
     // A list of given targets says nothing about others.
     assert_eq!(halfrow(["boards", "mock", "--json"]).json()["bitstreams"], json!([]));
+}
+
+#[test]
+fn a_board_is_loaded_whether_or_not_stdout_takes_the_result() {
+    let folder = with_loader(WORKS);
+    for more in [&[][..], &["--json"]] {
+        let full = File::options().write(true).open("/dev/full").unwrap();
+        let mut load = command(&folder, &[&["top.bit", "--onto", "ulx3s"], more].concat());
+        assert_eq!(load.stdout(full).stderr(Stdio::null()).status().unwrap().code(), Some(0), "{more:?}");
+    }
 }

@@ -17,7 +17,7 @@ use serde_json::json;
 
 use self::loader::Call;
 use self::record::Record;
-use super::{Context, Failure, print_or_tell};
+use super::{Context, Failure};
 use crate::arguments::board::wrong_board;
 use crate::arguments::given::Given;
 use crate::bitstreams::{BOARDS, BitstreamBoard};
@@ -91,9 +91,11 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     if context.json {
         let said = result_text("load", Exit::Pass, report.as_ref(), json!({ "loaded": loaded }))?;
-        return print_or_tell(Exit::Pass, &said);
+        console::tell(&said);
+    } else {
+        console::tell(&text(&loaded, report.as_ref()));
     }
-    print_or_tell(Exit::Pass, &text(&loaded, report.as_ref()))
+    Ok(Exit::Pass)
 }
 
 impl Arguments {
