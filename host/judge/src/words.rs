@@ -25,6 +25,12 @@ pub fn verb(number: impl Copy + ToString, plural: &str) -> Cow<'_, str> {
     }
 }
 
+/// How many of `all` things of a kind differ: `1 of 24 samples differs`.
+#[must_use]
+pub(crate) fn differ_of(number: impl Copy + ToString, all: impl Copy + ToString, what: &str) -> String {
+    format!("{} of {} {}", grouped(number), count(all, what), verb(number, "differ"))
+}
+
 /// A number with a comma before every third digit from the right.
 #[must_use]
 pub fn grouped(number: impl Copy + ToString) -> String {

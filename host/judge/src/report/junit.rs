@@ -13,7 +13,7 @@ use quick_junit::{
 use super::wording;
 use crate::result::{Check, FrameReport, Outcome, Report};
 use crate::verdict::Verdict;
-use crate::words::{count, grouped, plain, verb};
+use crate::words::{count, differ_of, plain};
 
 /// The report as an XML document.
 ///
@@ -95,9 +95,7 @@ fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
     let comparison = &frame.comparison;
     let message = match comparison.differences {
         0 => format!("{} of {} came back", frame.rows, count(frame.height(), "row")),
-        some => {
-            format!("{} of {} {}", grouped(some), count(comparison.samples, "sample"), verb(some, "differ"))
-        }
+        some => differ_of(some, comparison.samples, "sample"),
     };
     let first = comparison.first.map_or_else(String::new, |first| {
         format!(

@@ -306,7 +306,7 @@ pub fn soak(soak: &SoakReport) -> String {
         wrong.push(format!("{} of which {}", grouped(soak.wrong), verb(soak.wrong, "differ")));
     }
     if soak.miscounted > 0 {
-        let have = if soak.miscounted == 1 { "has" } else { "have" };
+        let have = verb(soak.miscounted, "have");
         wrong.push(format!("{} of which {have} wrong counts", grouped(soak.miscounted)));
     }
     let wrong = if wrong.is_empty() { "none of which differs".to_owned() } else { wrong.join(" and ") };

@@ -5,7 +5,7 @@ use super::{LOGIC, TIMING, Words};
 use crate::result::{
     BurstCount, ClockSeen, Corner, EqualAtSpeed, Finding, FlippedBit, NoBurst, Repetition, Streamed,
 };
-use crate::words::{count, grouped, hertz, span, verb};
+use crate::words::{count, differ_of, grouped, hertz, span, verb};
 
 pub(super) fn changed_on_entry(
     (rows, first, frame): (usize, usize, u16),
@@ -118,10 +118,8 @@ pub(super) fn differs(
 ) -> String {
     let suspicion = suspicion.map_or_else(String::new, |suspicion| format!("; {suspicion}"));
     format!(
-        "{} of {} {} at speed, the first is frame {}{}{suspicion}",
-        grouped(wrong),
-        count(frames, "frame"),
-        verb(wrong, "differ"),
+        "{} at speed, the first is frame {}{}{suspicion}",
+        differ_of(wrong, frames, "frame"),
         grouped(first),
         shown(repetition)
     )

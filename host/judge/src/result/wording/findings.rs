@@ -2,7 +2,7 @@
 
 use super::{at_speed, evidence, latency, missing, place, rules, suspicion};
 use crate::result::{Account, BoardKind, Counter, Defect, Doubt, Finding, NumberedRow, RepeatedRow, Rule};
-use crate::words::{board_name, count, grouped, verb};
+use crate::words::{board_name, count, differ_of, grouped};
 
 /// A finding in one sentence, without a full stop.
 #[must_use]
@@ -252,14 +252,8 @@ fn samples_differ(
     (differences, samples): (usize, usize),
     (differing_frames, frames): (usize, usize),
 ) -> String {
-    format!(
-        "{} of {} {}, in {} of {}",
-        grouped(differences),
-        count(samples, "sample"),
-        verb(differences, "differ"),
-        grouped(differing_frames),
-        count(frames, "frame")
-    )
+    let differ = differ_of(differences, samples, "sample");
+    format!("{differ}, in {} of {}", grouped(differing_frames), count(frames, "frame"))
 }
 
 /// How many of the samples and frames differ, and `why` the run then broke off.

@@ -3,7 +3,7 @@
 use halfrow_protocol::message::RefusalCode;
 
 use crate::result::{Answer, RowPart, RowsTried, Rule};
-use crate::words::{count, grouped, verb};
+use crate::words::{count, differ_of};
 
 /// What to do about any broken rule.
 pub(super) const REMEDY: &str = "Check how the board decodes requests, and try it with the conformance tests; \
@@ -12,12 +12,8 @@ pub(super) const REMEDY: &str = "Check how the board decodes requests, and try i
 /// How many of the samples differ, in the rows that a rule was tried with.
 pub(super) fn samples_differ((differences, samples): (usize, usize), rows: &RowsTried) -> String {
     let &RowsTried { width, height } = rows;
-    format!(
-        "{} of {} {} in rows that the rules were tried with ({width} x {height})",
-        grouped(differences),
-        count(samples, "sample"),
-        verb(differences, "differ")
-    )
+    let differ = differ_of(differences, samples, "sample");
+    format!("{differ} in rows that the rules were tried with ({width} x {height})")
 }
 
 /// What the board must do, and what it did.
