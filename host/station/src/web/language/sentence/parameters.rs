@@ -34,6 +34,7 @@ impl Words {
         let own = || Some(self.alone(name, value?));
         match name {
             "others" => Some(self.others(value.and_then(Value::as_u64).unwrap_or_default())),
+            "differing_frames" => Some(self.in_frames(parameters)),
             "is_one_row" => Some(self.one_row(parameters)),
             "rows" => self.some_rows(parameters).or_else(own),
             // Earlier records call the entries of tables `rows`.
@@ -103,6 +104,17 @@ impl Words {
             1 => self.say("told.another").to_owned(),
             more => self.fill("told.others", &[("others", &more.to_string())]),
         }
+    }
+
+    /// In how many of the streamed frames samples differ, or in which rows of the rules.
+    fn in_frames(&self, parameters: &Value) -> String {
+        let part = |name: &str| at(parameters, name).map_or_else(String::new, |value| self.value(value));
+        if parameters.get("tried").is_some() {
+            let [width, height] = ["tried.width", "tried.height"].map(part);
+            return self.fill("told.in-rules", &[("width", &width), ("height", &height)]);
+        }
+        let [differing, all] = ["differing_frames", "frames"].map(part);
+        self.fill("told.in-frames", &[("differing", &differing), ("all", &all)])
     }
 
     /// How many of all rows are late.

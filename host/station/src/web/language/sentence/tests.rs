@@ -92,6 +92,10 @@ fn findings_within_findings_and_parts_of_a_figure_are_said_too() {
     );
     let told = "7 von 99 Abtastwerten weichen ab, in 1 von 2 Bildern; Verdacht: Zeilenspeicher, Datenbit 5, hängt auf 1";
     assert_eq!(german(&differ).0, told);
+    let mut in_rules = differ.clone();
+    in_rules.parameters.insert("tried".to_owned(), json!({ "width": 14, "height": 3 }));
+    let told = "7 von 99 Abtastwerten weichen ab, in Zeilen, an denen die Regeln des Protokolls geprüft wurden (14 x 3); Verdacht: ";
+    assert!(german(&in_rules).0.starts_with(told), "{}", german(&in_rules).0);
     let asked = of(Some("de"), None).remedy(Some(&differ), "in English");
     assert!(asked.text.starts_with("Bitstream neu laden") && asked.foreign.is_none(), "{asked:?}");
     let doubted = judged(
