@@ -9,11 +9,11 @@ use crate::serial::{Holder, by};
 /// Why a board cannot be opened over USB.
 #[derive(Debug, thiserror::Error)]
 pub enum UsbError {
-    /// No USB is available on this computer.
+    /// No USB is available on this computer, for this reason of libusb's.
     #[error(
         "no USB is available on this computer; use a computer that has it, or see `halfrow boards` for other links"
     )]
-    NoUsb,
+    NoUsb(#[source] UsbFailure),
     /// No board with an FTDI chip is plugged in.
     #[error(
         "no board with an FTDI chip is plugged in; check cable and power, and, in a virtual machine or container, \

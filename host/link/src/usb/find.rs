@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::chip::{Channel, Chip};
 use super::error::UsbError;
 use super::serial_ports;
+use super::transport::failure;
 use crate::ftdi::VENDOR;
 use crate::sysfs::UsbDevice;
 use crate::{Holder, holders};
@@ -75,11 +76,15 @@ pub(crate) fn usb_boards() -> Result<Vec<UsbBoard>, UsbError> {
 
 fn all() -> Result<Vec<FtdiDevice>, UsbError> {
     // The crate's global context would panic on a machine without USB.
-    let context = Context::new().map_err(|_| UsbError::NoUsb)?;
-    let devices = context.devices().map_err(|_| UsbError::NoUsb)?;
+    let context = Context::new().map_err(no_usb)?;
+    let devices = context.devices().map_err(no_usb)?;
     let mut found: Vec<FtdiDevice> = devices.iter().filter_map(look_at).collect();
     found.sort_by(|one, other| one.board.place.cmp(&other.board.place));
     Ok(found)
+}
+
+fn no_usb(error: rusb::Error) -> UsbError {
+    UsbError::NoUsb(failure(error))
 }
 
 fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
