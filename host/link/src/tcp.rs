@@ -55,8 +55,10 @@ pub enum TcpError {
         /// How long each of its addresses was tried.
         seconds: Duration,
     },
-    /// This computer has no route to the host.
-    #[error("there is no route to `{address}`; check this computer's network")]
+    /// The host cannot be reached, or ends the connection at once.
+    #[error(
+        "`{address}` cannot be reached; check this computer's network, and the program that waits for connections there"
+    )]
     Unreachable {
         /// Host and port.
         address: String,

@@ -185,7 +185,7 @@ pub enum Saying {
     WaitsInstead { serial: String, other: String },
     #[error("{serial} waited for this board, and is not tested: {why}; then scan it again")]
     NotGiven { serial: String, why: Said },
-    #[error("disabled by an operator")]
+    #[error("taken out by hand")]
     OutByPerson,
     #[error("its process cannot be killed; restart the computer")]
     Unkillable,

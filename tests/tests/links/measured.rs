@@ -71,7 +71,7 @@ fn a_link_is_told_to_be_good_enough_for_a_run_or_too_poor() {
         let ended = measured(board);
         assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
         let last = ended.stdout.lines().last().unwrap();
-        assert!(last.contains(verdict) && last.ends_with("the limit is 5 % and 16"), "{}", ended.stdout);
+        assert!(last.contains(verdict) && last.ends_with("the limit is 16 plus 5 %"), "{}", ended.stdout);
     }
     // A run over either link says the same.
     let judged = |target: &str| {

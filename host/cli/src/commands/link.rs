@@ -68,7 +68,7 @@ struct LinkSummary<'a> {
     too_poor: bool,
 }
 
-/// `too poor for verify: 9.6 % sent again (120 of 1,250), the limit is 5 % and 16`, late ones not counted.
+/// `too poor for verify: 9.6 % sent again (120 of 1,250), the limit is 16 plus 5 %`, late ones not counted.
 fn enough(errors: &Errors, limit: RetryLimit, too_poor: bool) -> String {
     let verdict = if too_poor { "too poor for verify" } else { "good enough for verify" };
     let share = 100.0 * errors.lost() as f64 / errors.packets_out.max(1) as f64;
@@ -76,7 +76,7 @@ fn enough(errors: &Errors, limit: RetryLimit, too_poor: bool) -> String {
     // Rounded: 7 % as a share, times 100, is not 7 any more.
     let (percent, fixed) = ((1e8 * limit.share).round() / 1e6, limit.fixed);
     format!(
-        "{:<12} {verdict}: {share:.1} % sent again ({again} of {all}), the limit is {percent} % and {fixed}",
+        "{:<12} {verdict}: {share:.1} % sent again ({again} of {all}), the limit is {fixed} plus {percent} %",
         "judging"
     )
 }
@@ -181,7 +181,7 @@ mod tests {
         for percent in [0.0, 0.1, 2.345, 7.0, 14.0, 28.0, 55.0, 100.0] {
             let limit = RetryLimit::of_percent(percent);
             let said = enough(&errors, limit, false);
-            assert!(said.ends_with(&format!(", the limit is {percent} % and 16")), "{said}");
+            assert!(said.ends_with(&format!(", the limit is 16 plus {percent} %")), "{said}");
         }
     }
 }

@@ -262,7 +262,7 @@ fn a_number_that_was_not_given_does_not_hide_why_its_lane_is_out_or_saved_nothin
         assert!(noted(floor).contains(&serial(0)), "{}", noted(floor));
     }
     owes.act(0, Act::Out, WEBER).unwrap();
-    assert_eq!((words(&owes)[0], noted(&owes).as_str()), (Word::Out, "disabled by an operator"));
+    assert_eq!((words(&owes)[0], noted(&owes).as_str()), (Word::Out, "taken out by hand"));
     let mut ended = running.clone();
     ended.happened(0, Event::Ended(shown(Verdict::Pass)));
     assert!(noted(&ended).contains(&serial(0)), "{}", noted(&ended));

@@ -19,8 +19,7 @@ fn what_has_a_code_is_said_in_the_language_with_its_figures_and_causes() {
     let out = ScanError::Lane(Refusal::Out { lane, why: Saying::OutByPerson.into() });
     let told = "Platz 3 ist gesperrt: durch einen Bediener; mit HR:IN entsperren oder anderen Platz nehmen";
     assert_eq!(german(&Said::of(&out)), (told.to_owned(), None));
-    let text =
-        "lane 3 is out of service: disabled by an operator; put it back with HR:IN, or take another lane";
+    let text = "lane 3 is out of service: taken out by hand; put it back with HR:IN, or take another lane";
     assert_eq!(of(None, None).tell(&Said::of(&out)).text, text);
     let seconds = Said::from(Saying::LaneSilent { seconds: 2.5 });
     assert_eq!(german(&seconds).0, "der Prozess des Platzes meldete 2,5 s lang nichts");
@@ -38,7 +37,7 @@ fn what_is_asked_for_is_told_apart_from_why() {
         assert!(!why.text.contains("HR:MOCK") && !why.text.ends_with([';', '；', ' ']), "{why:?}");
     }
     let (why, told) = of(None, None).parted(&Saying::OutByPerson.into(), None);
-    assert_eq!((why.text.as_str(), told), ("disabled by an operator", None));
+    assert_eq!((why.text.as_str(), told), ("taken out by hand", None));
     let said = |code: &str, message: &str, parameters: Value| Said {
         message: message.to_owned(),
         ..judged(code, &parameters)
@@ -73,7 +72,7 @@ fn what_is_asked_for_is_told_apart_from_why() {
 #[test]
 fn what_has_no_words_is_told_in_english_and_marked_so() {
     let new = Said { code: "of-tomorrow".to_owned(), ..Saying::OutByPerson.into() };
-    assert_eq!(german(&new), ("disabled by an operator".to_owned(), Some("en")));
+    assert_eq!(german(&new), ("taken out by hand".to_owned(), Some("en")));
     let cause = Said { message: "disk I/O error".to_owned(), code: "foreign-cause".to_owned(), ..new };
     let led = Said { causes: vec![cause], ..Saying::DeviceUnsaid.into() };
     assert_eq!(
