@@ -155,13 +155,8 @@ impl Run<'_> {
         let corners = corners::corners(&capabilities, self.plan.seed);
         for (place, tables) in (0..).zip(&corners) {
             let Some(active) = tables.first().map(|active| &active.tables) else { continue };
-            let in_corner = |mut end| {
-                if let End::Failed { finding, .. } = &mut end {
-                    let (corner, found) = (Corner::from(active), Box::new(finding.clone()));
-                    *finding = Finding::InCorner { corner, found };
-                }
-                end
-            };
+            let in_corner =
+                |end: End| end.failed_as(|found| Finding::InCorner { corner: Corner::from(active), found });
             self.upload_corner(tables).map_err(in_corner)?;
             let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
             let mut plan = BurstPlan::new(

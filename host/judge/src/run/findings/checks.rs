@@ -29,10 +29,10 @@ impl Checks {
     /// Notes the check by which the run ends, or one that is wrong in addition to it. After an upload that failed, what was
     /// read back was of earlier tables.
     pub(crate) fn ended(&mut self, end: &End) {
-        if end.name() == CheckName::Upload {
+        if end.check() == CheckName::Upload {
             self.made.retain(|check| check.name != CheckName::ReadBack);
         }
-        self.note(end.name(), end.outcome(), end.finding().clone());
+        self.note(end.check(), end.outcome(), end.finding().clone());
     }
 
     /// Notes the outcome of a check. If a check is made again, its last outcome stands, and its times add up.

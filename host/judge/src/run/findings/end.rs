@@ -41,8 +41,18 @@ impl End {
         self
     }
 
+    /// The same with what was found `within` another finding, if the board is wrong.
+    pub(crate) fn failed_as(self, within: impl FnOnce(Box<Finding>) -> Finding) -> Self {
+        match self {
+            Self::Failed { check, finding, suspects, beyond_links } => {
+                Self::Failed { check, finding: within(Box::new(finding)), suspects, beyond_links }
+            }
+            Self::Error { .. } => self,
+        }
+    }
+
     /// The check that ended the run.
-    pub(crate) fn name(&self) -> CheckName {
+    pub(crate) fn check(&self) -> CheckName {
         match self {
             Self::Failed { check, .. } | Self::Error { check, .. } => *check,
         }

@@ -67,12 +67,8 @@ impl Run<'_> {
             return Ok(Finding::TablesUnused {});
         };
         let checked = self.check_read_back(CheckName::TablesAfter, Bank::Active, &last);
-        checked.map(|_| Finding::TablesUnchanged {}).map_err(|mut end| {
-            if let End::Failed { finding, .. } = &mut end {
-                *finding = Finding::TablesChanged { found: Box::new(finding.clone()) };
-            }
-            end
-        })
+        let changed = |end: End| end.failed_as(|found| Finding::TablesChanged { found });
+        checked.map(|_| Finding::TablesUnchanged {}).map_err(changed)
     }
 
     fn frames(&self, seen: &Observations, tables_after: Option<&End>) -> Result<Finding, End> {

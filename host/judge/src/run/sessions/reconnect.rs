@@ -51,7 +51,7 @@ impl Run<'_> {
     /// Waits for a board that went away with `end`. Returns any other end as it is, and what the board did with rows that no
     /// link can cause, which would be forgotten with its session.
     pub(crate) fn come_back(&mut self, end: End) -> Result<(), End> {
-        self.unless_misconduct(end.name(), Ok(()))?;
+        self.unless_misconduct(end.check(), Ok(()))?;
         let Some(patience) = self.sessions.patience_after(&end) else { return Err(end) };
         self.progress.step(Step::WaitForTheBoard);
         self.findings.attempt.link_broke(self.board);

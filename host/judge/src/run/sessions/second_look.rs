@@ -64,7 +64,7 @@ impl Run<'_> {
             None => found,
             Some(doubt) => {
                 let finding = Finding::WrongOverDoubtfulLink { found: Box::new(unasked(&found)), doubt };
-                End::error(found.name(), Cause::Station, finding)
+                End::error(found.check(), Cause::Station, finding)
             }
         }
     }
@@ -85,7 +85,7 @@ impl Run<'_> {
         if end.is_beyond_links() {
             return None;
         }
-        let doubt = self.doubt(end.name())?;
+        let doubt = self.doubt(end.check())?;
         (end.is_failed() || doubt != Doubt::PacketsUncounted {}).then_some(doubt)
     }
 
@@ -189,7 +189,7 @@ pub(crate) fn unasked(end: &End) -> Finding {
 
 fn right_in_another_session(found: &End, doubt: Doubt) -> End {
     let finding = Finding::RightInAnotherSession { found: Box::new(unasked(found)), doubt };
-    End::error(found.name(), Cause::Station, finding)
+    End::error(found.check(), Cause::Station, finding)
 }
 
 /// Turns `end`, which broke off a second look, into a finding that also says what the look was to clear up.

@@ -24,7 +24,7 @@ impl Run<'_> {
             .collect();
         match credits.last() {
             Some(&rows) if credits.len() == TIMES as usize => {
-                End::failed(end.name(), window_wrong(banks, rows))
+                End::failed(end.check(), window_wrong(banks, rows))
             }
             _ => end,
         }
