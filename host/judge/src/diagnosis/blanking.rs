@@ -1,7 +1,7 @@
 //! Rows that are wrong only if they follow each other as closely as the board says that it allows.
 
 use super::Case;
-use crate::result::{Account, Defect, FrameReport, FrameTiming, NamedBlanking, Suspect};
+use crate::result::{Defect, FrameReport, FrameTiming, NamedBlanking, Suspect};
 
 /// Wrong rows in each frame with the least blanking, on average, from which on a frame without any is no chance; half of the
 /// rows of a smaller frame.
@@ -25,9 +25,6 @@ pub(super) fn suspect(case: &Case<'_>) -> Option<Suspect> {
     let goes_on = after.first().is_some_and(|next| next.comparison.differences > 0);
     let least = ROWS.min(wide.height() / 2) * close.len();
     let is_told = named < right && wide.comparison.differences == 0 && rows >= least && goes_on;
-    is_told.then_some(Suspect {
-        defect: Defect::LeastBlankingTooSmall(NamedBlanking { named, right }),
-        account: Account::Nothing,
-        explained: 0.0,
-    })
+    let defect = Defect::LeastBlankingTooSmall(NamedBlanking { named, right });
+    is_told.then(|| Suspect::explaining_nothing(defect))
 }

@@ -2,7 +2,7 @@
 
 use super::witnesses::{Witness, Witnesses};
 use crate::compare::bits_in;
-use crate::result::{Account, Defect, Extent, FrameReport, Suspect};
+use crate::result::{Defect, Extent, FrameReport, Suspect};
 
 /// Where the differences lie.
 pub(super) fn summary(witnesses: &Witnesses<'_>) -> Suspect {
@@ -20,7 +20,7 @@ pub(super) fn summary(witnesses: &Witnesses<'_>) -> Suspect {
         frames: frames.len(),
         of_frames: witnesses.case.frames.len(),
     };
-    Suspect { defect, account: Account::Nothing, explained: 0.0 }
+    Suspect::explaining_nothing(defect)
 }
 
 fn rows(witnesses: &Witnesses<'_>, frames: &[&FrameReport]) -> Option<Extent> {

@@ -123,7 +123,7 @@ fn wrong_length(expected: Words<'_>, found: Words<'_>) -> Suspect {
     let entry = expected.table.entry_bytes();
     let (uploaded, read) = (expected.bytes.len() / entry, found.bytes.len() / entry);
     let defect = Defect::TableLengthWrong { table: expected.memory(), uploaded, read };
-    Suspect { defect, account: Account::Nothing, explained: 0.0 }
+    Suspect::explaining_nothing(defect)
 }
 
 /// The suspect for `word`, the first of `count` wrong words.

@@ -242,7 +242,7 @@ pub fn suspects() -> Vec<Suspect> {
     let seen = in_tables().into_iter().chain(of_lines()).chain(of_logic());
     let seen = seen.map(|defect| Suspect { defect, account: samples.clone(), explained: 1.0 });
     let read = read_back().map(|defect| Suspect { defect, account: words.clone(), explained: 1.0 });
-    let unknown = Suspect { defect: none_known(), account: Account::Nothing, explained: 0.0 };
+    let unknown = Suspect::explaining_nothing(none_known());
     let late = Suspect {
         defect: Defect::TablesChangeLate { rows: 1 },
         account: Account::Signatures { wrong: 2, explained: 2 },
@@ -378,7 +378,7 @@ fn without_share() -> impl Iterator<Item = Suspect> {
         Defect::LeastBlankingTooSmall(NamedBlanking { named: 8, right: 900 }),
     ]
     .into_iter()
-    .map(|defect| Suspect { defect, account: Account::Nothing, explained: 0.0 })
+    .map(Suspect::explaining_nothing)
 }
 
 fn none_known() -> Defect {

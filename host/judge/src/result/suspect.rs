@@ -64,7 +64,34 @@ pub struct Shortfall {
     pub contradicted: usize,
 }
 
+/// What a finding says of the suspect that stands first.
+#[derive(Default)]
+pub(crate) struct Lead {
+    /// Its defect, if there is any suspect.
+    pub(crate) suspect: Option<Box<Defect>>,
+    /// How many others explain everything equally well.
+    pub(crate) others: usize,
+    /// What it leaves unexplained.
+    pub(crate) short: Option<Shortfall>,
+}
+
+impl Lead {
+    /// Of `suspects`, the likeliest first.
+    pub(crate) fn of(suspects: &[Suspect]) -> Self {
+        suspects.first().map_or_else(Self::default, |first| Self {
+            suspect: Some(Box::new(first.defect.clone())),
+            others: first.others(),
+            short: first.shortfall(),
+        })
+    }
+}
+
 impl Suspect {
+    /// A suspect that says where the differences lie, and explains none of them.
+    pub(crate) fn explaining_nothing(defect: Defect) -> Self {
+        Self { defect, account: Account::Nothing, explained: 0.0 }
+    }
+
     /// What it leaves unexplained; none if it explains everything, or names no defect that could.
     #[must_use]
     pub fn shortfall(&self) -> Option<Shortfall> {

@@ -18,7 +18,7 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
-    Account, CheckName, Defect, Evidence, Finding, FrameReport, KeptRow, MissingRows, Problem, Repetition,
+    CheckName, Defect, Evidence, Finding, FrameReport, KeptRow, Lead, MissingRows, Problem, Repetition,
     Streamed, Suspect,
 };
 use crate::run::findings::{During, End};
@@ -105,9 +105,7 @@ impl Run<'_> {
         if suspects.is_empty() {
             suspects.extend(at_speed(repetition.streamed(), None));
         }
-        let suspect = suspects.first().map(|suspect| Box::new(suspect.defect.clone()));
-        let others = suspects.first().map_or(0, Suspect::others);
-        let short = suspects.first().and_then(Suspect::shortfall);
+        let Lead { suspect, others, short } = Lead::of(&suspects);
         let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short };
         End::suspecting(CheckName::AtSpeed, finding, suspects)
     }
@@ -280,8 +278,7 @@ impl Run<'_> {
 
 /// A frame that was wrong at try `frames`, of which the trap kept `row` with right samples and another signature.
 fn signed_wrong(frames: u32, row: usize, only_there: bool) -> Again {
-    let suspect =
-        Suspect { defect: Defect::SignatureWrong { row }, account: Account::Nothing, explained: 0.0 };
+    let suspect = Suspect::explaining_nothing(Defect::SignatureWrong { row });
     Again { repetition: Repetition::SignedWrong { frames, row, only_there }, suspects: vec![suspect] }
 }
 
@@ -312,7 +309,7 @@ fn at_speed(streamed: Streamed, kept: Option<TrappedRow<'_>>) -> Option<Suspect>
         Streamed::Right => Defect::OnlyAtSpeed { row, samples, bits },
         Streamed::Wrong => return None,
     };
-    Some(Suspect { defect, account: Account::Nothing, explained: 0.0 })
+    Some(Suspect::explaining_nothing(defect))
 }
 
 /// How many samples differ, and in which bits.

@@ -5,7 +5,7 @@ use super::entry::WrongEntry;
 use super::observations::Observations;
 use crate::board::Bank;
 use crate::diagnosis::{self, Case, Uploaded};
-use crate::result::{Account, CheckName, Defect, Finding, Suspect};
+use crate::result::{Account, CheckName, Defect, Finding, Lead, Suspect};
 use crate::run::findings::{During, End, Findings};
 use crate::run::plan::{DECOY, Generation};
 use crate::run::steps::Run;
@@ -89,15 +89,16 @@ impl Run<'_> {
             return Err(End::suspecting(CheckName::Frames, finding.clone(), suspects.clone()));
         }
         let suspects = self.diagnose(seen);
+        let Lead { suspect, others, short } = Lead::of(&suspects);
         let finding = Finding::SamplesDiffer {
             differences: seen.differences(),
             samples,
             differing_frames: differing,
             frames,
             tried: None,
-            suspect: suspects.first().map(|suspect| Box::new(suspect.defect.clone())),
-            others: suspects.first().map_or(0, Suspect::others),
-            short: suspects.first().and_then(Suspect::shortfall),
+            suspect,
+            others,
+            short,
         };
         Err(End::suspecting(CheckName::Frames, finding, suspects))
     }

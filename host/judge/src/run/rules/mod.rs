@@ -39,7 +39,7 @@ use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Datapath, Given, Had, Response, RowTiming, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
-use crate::result::{Answer, CheckName, Counter, Doubt, Finding, RowPart, RowsTried, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Lead, RowPart, RowsTried, Rule, Suspect};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
@@ -265,19 +265,20 @@ impl<'a, 'run> Rules<'a, 'run> {
         let Some(WrongRow { row, frame, seen, differs }) = &compared.wrong else { return Ok(()) };
         if let Some(seen) = seen {
             let suspects = self.run.diagnose_rows(seen, "rules", *frame);
-            if let Some(first) = suspects.first().filter(|first| first.is_known()) {
+            if suspects.first().is_some_and(Suspect::is_known) {
                 let compared = Comparison::of_frames(&seen.evidence.expected, &seen.evidence.found);
                 let expected = &seen.evidence.expected;
                 let tried = RowsTried { width: expected.width(), height: expected.height() };
+                let Lead { suspect, others, short } = Lead::of(&suspects);
                 let finding = Finding::SamplesDiffer {
                     differences: compared.differences,
                     samples: compared.samples,
                     differing_frames: 1,
                     frames: 1,
                     tried: Some(Box::new(tried)),
-                    suspect: Some(Box::new(first.defect.clone())),
-                    others: first.others(),
-                    short: first.shortfall(),
+                    suspect,
+                    others,
+                    short,
                 };
                 return Err(End::suspecting(CheckName::Rules, finding, suspects));
             }

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use crate::progress::Soaked;
 use crate::result::{
-    BurstCount, CheckName, Defect, Finding, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect,
+    BurstCount, CheckName, Defect, Finding, Lead, SoakDifference, SoakInterval, SoakLength, SoakReport,
+    Suspect,
 };
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::BurstSeen;
@@ -179,9 +180,7 @@ fn tell_more(first: &mut End, seen: &[Suspect]) {
         && !names_row(suspects)
         && names_row(seen)
     {
-        *suspect = seen.first().map(|first| Box::new(first.defect.clone()));
-        *others = seen.first().map_or(0, Suspect::others);
-        *short = seen.first().and_then(Suspect::shortfall);
+        Lead { suspect: *suspect, others: *others, short: *short } = Lead::of(seen);
         *suspects = seen.to_vec();
     }
 }
