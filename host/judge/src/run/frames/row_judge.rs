@@ -31,6 +31,7 @@ pub(crate) struct JudgeOptions {
     pub(crate) evidence_bytes: usize,
     /// Whether the board signs what entered its core.
     pub(crate) names_entered: bool,
+    pub(crate) timing: FrameTiming,
     /// The setting that the segment's frames try, if any.
     pub(crate) variation: Option<Variation>,
     /// The number of rows of its frames, if these are not whole.
@@ -56,7 +57,6 @@ pub(crate) struct RowJudge<'a> {
     source: Source<'a>,
     seen: &'a mut Observations,
     options: JudgeOptions,
-    timing: FrameTiming,
     progress: &'a dyn Progress,
     unprepared: Option<PrepareError>,
     clock: FrameClock,
@@ -76,14 +76,12 @@ impl<'a> RowJudge<'a> {
         source: Source<'a>,
         seen: &'a mut Observations,
         options: JudgeOptions,
-        timing: FrameTiming,
         progress: &'a dyn Progress,
     ) -> Self {
         Self {
             source,
             seen,
             options,
-            timing,
             progress,
             unprepared: None,
             clock: FrameClock::new(),
@@ -196,7 +194,7 @@ impl<'a> RowJudge<'a> {
             sha256,
             phase: input.phase(),
             generation,
-            timing: self.timing,
+            timing: self.options.timing,
             variation: self.options.variation,
             first_rows: self.options.first_rows,
             comparison,
@@ -276,7 +274,7 @@ impl RowTraffic for RowJudge<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc::channel;
+    use std::sync::mpsc::{Receiver, channel};
 
     use halfrow_model::{BitDepth, Frame, Phase};
 
@@ -309,10 +307,28 @@ mod tests {
             keep_equal: false,
             evidence_bytes: 0,
             names_entered: false,
+            timing: FrameTiming::Gaps { seed: 0 },
             variation: None,
             first_rows: None,
             pauses: vec![0; HEIGHT],
         }
+    }
+
+    /// A source of these frames and no others.
+    fn source_of<const N: usize>(
+        frames: [Result<Prepared, PrepareError>; N],
+    ) -> Receiver<Result<Prepared, PrepareError>> {
+        let (sender, source) = channel();
+        frames.into_iter().for_each(|frame| sender.send(frame).unwrap());
+        source
+    }
+
+    fn judge<'a>(
+        source: &'a Receiver<Result<Prepared, PrepareError>>,
+        seen: &'a mut Observations,
+        options: JudgeOptions,
+    ) -> RowJudge<'a> {
+        RowJudge::new(source.iter().take(usize::MAX), seen, options, &Silent)
     }
 
     fn give(judge: &mut RowJudge<'_>, frame: u16, row: usize, sample: u16) {
@@ -334,17 +350,9 @@ mod tests {
 
     #[test]
     fn a_frame_that_is_sent_again_has_every_row_judged_once() {
-        let (sender, source) = channel();
-        [7, 8].into_iter().for_each(|number| sender.send(Ok(frame(number))).unwrap());
-        drop(sender);
+        let source = source_of([Ok(frame(7)), Ok(frame(8))]);
         let mut seen = Observations::default();
-        let mut judge = RowJudge::new(
-            source.iter().take(2),
-            &mut seen,
-            options(),
-            FrameTiming::Gaps { seed: 0 },
-            &Silent,
-        );
+        let mut judge = judge(&source, &mut seen, options());
         let sent = |judge: &mut RowJudge<'_>| judge.next_frame().map(|frame| frame.number);
         assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));
         [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));
@@ -365,13 +373,9 @@ mod tests {
 
     #[test]
     fn a_frame_that_did_not_come_back_whole_is_kept_with_the_rows_that_are_missing() {
-        let (sender, source) = channel();
-        sender.send(Ok(frame(7))).unwrap();
-        drop(sender);
+        let source = source_of([Ok(frame(7))]);
         let mut seen = Observations::default();
-        let timing = FrameTiming::Gaps { seed: 0 };
-        let options = JudgeOptions { evidence_bytes: 1 << 20, ..options() };
-        let mut judge = RowJudge::new(source.iter().take(1), &mut seen, options, timing, &Silent);
+        let mut judge = judge(&source, &mut seen, JudgeOptions { evidence_bytes: 1 << 20, ..options() });
         judge.next_frame().unwrap();
         [(0, 7), (2, 6)].into_iter().for_each(|(row, sample)| give(&mut judge, 7, row, sample));
         judge.finish().unwrap();
@@ -382,15 +386,11 @@ mod tests {
     /// No frame behind it is sent, so that all that comes back is right.
     #[test]
     fn a_frame_that_cannot_be_made_is_told_when_all_before_have_come_back() {
-        let (sender, source) = channel();
-        let name = || String::from("street");
         let cannot = Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![0; 1]).unwrap_err();
-        sender.send(Ok(frame(7))).unwrap();
-        sender.send(Err(PrepareError::Render { name: name(), source: cannot })).unwrap();
-        drop(sender);
+        let cannot = PrepareError::Render { name: "street".to_owned(), source: cannot };
+        let source = source_of([Ok(frame(7)), Err(cannot)]);
         let mut seen = Observations::default();
-        let timing = FrameTiming::Gaps { seed: 0 };
-        let mut judge = RowJudge::new(source.iter().take(3), &mut seen, options(), timing, &Silent);
+        let mut judge = judge(&source, &mut seen, options());
         assert_eq!(judge.next_frame().map(|frame| frame.number), Some(7));
         assert!(judge.next_frame().is_none());
         (0..HEIGHT).for_each(|row| give(&mut judge, 7, row, 7));

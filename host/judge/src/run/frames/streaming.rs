@@ -25,9 +25,8 @@ impl Run<'_> {
         source: &Receiver<Result<Prepared, PrepareError>>,
         seen: &mut Observations,
     ) -> Result<(), End> {
-        let (options, timing) = (self.judge_options(segment), self.timing(segment.timing));
         let frames = source.iter().take(segment.frames.len());
-        let mut judge = RowJudge::new(frames, seen, options, timing, self.progress);
+        let mut judge = RowJudge::new(frames, seen, self.judge_options(segment), self.progress);
         let streamed = self.stream_to_the_end(segment, &mut judge);
         let prepared = judge.finish();
         streamed?;
@@ -71,6 +70,7 @@ impl Run<'_> {
             keep_equal: self.options.keep_equal,
             evidence_bytes: self.options.evidence_bytes,
             names_entered: self.board.capabilities.entered,
+            timing: self.timing(*timing),
             variation: self.plan.variation(geometry),
             first_rows: Some(geometry.height()).filter(|&rows| rows < self.plan.tables.geometry().height()),
             pauses: pauses(gap_seed, geometry.width(), geometry.height()),
