@@ -9,12 +9,11 @@ use super::finished::Finished;
 use crate::coverage::Faults;
 use crate::frames::street;
 use crate::result::{
-    BoardReport, CheckName, CoverageReport, Finding, FrameReport, FrameTotals, LinkReport, NotExercised,
-    Problem, Report, RunReport, Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
+    BoardReport, CheckName, CoverageReport, Finding, FrameTotals, LinkReport, NotExercised, Problem, Report,
+    RunReport, Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
 };
 use crate::run::Findings;
 use crate::run::frames::observations::Observations;
-use crate::run::frames::row_judge::STREET;
 use crate::run::{Plan, Provenance, RunOptions};
 use crate::verdict::Cause;
 
@@ -161,11 +160,8 @@ fn left_out(name: CheckName, plan: &Plan) -> Finding {
 
 /// The edges of the built-in street, when it was streamed whole, came back whole, and was kept.
 fn street(plan: &Plan, seen: &Observations) -> Option<StreetReport> {
-    let street = seen.evidence.all().iter().find(|evidence| {
-        let is_whole =
-            |frame: &FrameReport| frame.first_rows.is_none() && frame.rows == evidence.expected.height();
-        seen.frames.get(evidence.index).is_some_and(|frame| frame.name == STREET && is_whole(frame))
-    })?;
+    let street = seen.evidence.pinned()?;
+    seen.frames.get(street.index).filter(|frame| frame.rows == street.expected.height())?;
     Some(StreetReport {
         before: street::edge_deviation(&street.input, &plan.scene(0))?,
         after: street::edge_deviation(&street.found, &plan.scene(0))?,

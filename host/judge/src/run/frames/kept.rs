@@ -43,7 +43,7 @@ pub(crate) struct KeptFrames {
     bytes: usize,
     bytes_of_counts: usize,
     left_out: usize,
-    /// The index of the frame that is never replaced.
+    /// The index of the first pinned frame, which is never replaced.
     pinned: Option<usize>,
 }
 
@@ -62,7 +62,7 @@ impl KeptFrames {
             self.left_out += usize::from(offered.is_wanted);
         } else if let Some(evidence) = evidence() {
             if offered.is_pinned {
-                self.pinned = Some(evidence.index);
+                self.pinned.get_or_insert(evidence.index);
             }
             self.bytes += bytes(&evidence);
             self.evidence.push(evidence);
@@ -120,6 +120,11 @@ impl KeptFrames {
         &self.evidence
     }
 
+    /// The first pinned frame.
+    pub(crate) fn pinned(&self) -> Option<&Evidence> {
+        self.evidence.iter().find(|evidence| Some(evidence.index) == self.pinned)
+    }
+
     /// The wanted frames, and what the report says about them.
     pub(crate) fn finish(self) -> (Vec<Evidence>, EvidenceReport) {
         let wanted = self.evidence.into_iter().zip(self.labels).filter(|(_, label)| label.is_wanted);
@@ -156,19 +161,20 @@ mod tests {
     }
 
     /// The indices of the frames that are kept if there is room for `room` of them, and the number left out. `differing`
-    /// says which of them differ; the one at `pinned` is pinned.
-    fn kept(room: usize, pinned: usize, differing: &[bool]) -> (Vec<usize>, usize) {
+    /// says which of them differ; those at `pinned` are pinned.
+    fn kept(room: usize, pinned: &[usize], differing: &[bool]) -> (Vec<usize>, usize) {
         let names: Vec<_> = (0..differing.len()).map(|index| index.to_string()).collect();
         let named: Vec<_> = names.iter().map(String::as_str).zip(differing.iter().copied()).collect();
         kept_of(room, pinned, &named)
     }
 
     /// The same for frames with names.
-    fn kept_of(room: usize, pinned: usize, named: &[(&str, bool)]) -> (Vec<usize>, usize) {
+    fn kept_of(room: usize, pinned: &[usize], named: &[(&str, bool)]) -> (Vec<usize>, usize) {
         let budget = room * ONE * SHARE_OF_COUNTS / (SHARE_OF_COUNTS - 1);
         let mut kept = KeptFrames::default();
         for (index, &(name, differs)) in named.iter().enumerate() {
-            let offered = Offered { name, differs, is_wanted: true, is_pinned: index == pinned, bytes: ONE };
+            let offered =
+                Offered { name, differs, is_wanted: true, is_pinned: pinned.contains(&index), bytes: ONE };
             kept.offer(&offered, budget, || Some(evidence(index, differs)));
         }
         let (evidence, report) = kept.finish();
@@ -178,29 +184,32 @@ mod tests {
 
     #[test]
     fn what_differs_takes_the_place_of_what_is_equal_and_the_budget_holds() {
-        let none = usize::MAX;
-        assert_eq!(kept(3, none, &[false, false, false, false]), (vec![0, 1, 2], 1));
-        assert_eq!(kept(3, none, &[false, true, false, true]), (vec![0, 1, 3], 1));
-        assert_eq!(kept(2, none, &[false, true, true, true, false]), (vec![1, 2], 3));
-        assert_eq!(kept(2, 0, &[false, true, true, true, false]), (vec![0, 1], 3));
-        assert_eq!(kept(0, none, &[true]), (vec![], 1));
+        assert_eq!(kept(3, &[], &[false, false, false, false]), (vec![0, 1, 2], 1));
+        assert_eq!(kept(3, &[], &[false, true, false, true]), (vec![0, 1, 3], 1));
+        assert_eq!(kept(2, &[], &[false, true, true, true, false]), (vec![1, 2], 3));
+        assert_eq!(kept(2, &[0], &[false, true, true, true, false]), (vec![0, 1], 3));
+        assert_eq!(kept(0, &[], &[true]), (vec![], 1));
     }
 
     #[test]
     fn a_picture_that_is_not_there_takes_the_place_of_one_that_is_there_twice() {
-        let none = usize::MAX;
         let twice = |names: &[&'static str]| names.iter().map(|&name| (name, true)).collect::<Vec<_>>();
-        assert_eq!(kept_of(2, none, &twice(&["a", "a", "a", "b", "b", "c"])), (vec![0, 3], 4));
-        assert_eq!(kept_of(3, none, &twice(&["a", "a", "b", "c", "a", "d"])), (vec![0, 2, 3], 3));
-        assert_eq!(kept_of(2, 1, &twice(&["a", "a", "b"])), (vec![0, 1], 1));
+        assert_eq!(kept_of(2, &[], &twice(&["a", "a", "a", "b", "b", "c"])), (vec![0, 3], 4));
+        assert_eq!(kept_of(3, &[], &twice(&["a", "a", "b", "c", "a", "d"])), (vec![0, 2, 3], 3));
+        assert_eq!(kept_of(2, &[1], &twice(&["a", "a", "b"])), (vec![0, 1], 1));
         // An equal frame does not replace a repetition of one that differs.
-        assert_eq!(kept_of(2, none, &[("a", true), ("a", true), ("b", false)]), (vec![0, 1], 1));
+        assert_eq!(kept_of(2, &[], &[("a", true), ("a", true), ("b", false)]), (vec![0, 1], 1));
     }
 
     #[test]
     fn a_pinned_frame_that_is_equal_takes_the_place_of_an_equal_one() {
-        assert_eq!(kept(2, 2, &[false, false, false, false]), (vec![0, 2], 2));
-        assert_eq!(kept(2, 2, &[true, true, false]), (vec![0, 1], 1));
+        assert_eq!(kept(2, &[2], &[false, false, false, false]), (vec![0, 2], 2));
+        assert_eq!(kept(2, &[2], &[true, true, false]), (vec![0, 1], 1));
+    }
+
+    #[test]
+    fn of_pinned_frames_only_the_first_is_never_replaced() {
+        assert_eq!(kept(2, &[0, 1], &[false, false, true]), (vec![0, 2], 1));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 pub(super) mod counters;
 mod entry;
 mod frame_clock;
+mod in_flight;
 pub(super) mod kept;
 mod lost_row;
 pub(super) mod observations;

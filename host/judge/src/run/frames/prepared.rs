@@ -7,15 +7,18 @@ use std::thread::Scope;
 use halfrow_model::{CorrectError, Frame, FrameError, Geometry};
 
 use crate::board::NumberedFrame;
+use crate::frames::Builtin;
 use crate::reference::correct;
 use crate::result::{little_endian, sha256};
 use crate::run::findings::levels::Levels;
-use crate::run::plan::{Generation, Plan, ScheduledFrame, Segment};
+use crate::run::plan::{FrameSource, Generation, Plan, ScheduledFrame, Segment};
 use crate::run::threads::{self, NoThread};
 
 /// A frame that is ready to be sent, with the frame that must come back.
 pub(crate) struct Prepared {
     pub(crate) name: String,
+    /// Whether it is the built-in street, whose façades the report measures.
+    pub(crate) is_street: bool,
     pub(crate) number: u16,
     pub(crate) generation: u8,
     /// SHA-256 of the input's samples, 16 bits little endian, in hexadecimal.
@@ -86,6 +89,7 @@ impl Prepared {
             .map_err(|source| PrepareError::Correct { name: name.clone(), source })?;
         Ok(Self {
             name,
+            is_street: matches!(frame.source, FrameSource::Builtin(Builtin::Street)),
             number: frame.number,
             generation: frame.generation,
             sha256: sha256(input.rows().map(little_endian)),

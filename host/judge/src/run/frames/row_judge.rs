@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::iter::Take;
+use std::mem;
 use std::ops::ControlFlow;
 use std::sync::{Arc, mpsc};
 
@@ -9,16 +10,13 @@ use halfrow_model::{Frame, row_signature};
 
 use super::entry::{WrongEntry, flipped_bit};
 use super::frame_clock::FrameClock;
+use super::in_flight::InFlight;
 use super::kept::{Offered, as_found};
 use super::observations::Observations;
 use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
-use crate::compare::Comparison;
 use crate::progress::Progress;
 use crate::result::{Evidence, Finding, FrameReport, FrameTiming, MissingRows, Variation};
-
-/// This frame is kept even if it is equal, because the report measures its façades.
-pub(crate) const STREET: &str = "builtin:street";
 
 /// How rows are judged, and what is kept.
 pub(crate) struct JudgeOptions {
@@ -38,15 +36,6 @@ pub(crate) struct JudgeOptions {
     pub(crate) first_rows: Option<usize>,
     /// The board clocks for which gaps keep the enable off, for each row of a frame.
     pub(crate) pauses: Vec<u16>,
-}
-
-struct InFlight {
-    prepared: Prepared,
-    found: Vec<u16>,
-    /// Which rows have come back.
-    returned: Vec<bool>,
-    rows: usize,
-    comparison: Comparison,
 }
 
 /// The frames of a segment.
@@ -105,7 +94,7 @@ impl<'a> RowJudge<'a> {
 
     /// Whether something that came back is wrong.
     pub(crate) fn has_found(&self) -> bool {
-        !self.seen.is_right() || self.in_flight.iter().any(|frame| frame.comparison.differences > 0)
+        !self.seen.is_right() || self.in_flight.iter().any(InFlight::is_wrong)
     }
 
     /// Leaves what follows out of the frames' time until the stream begins again.
@@ -160,33 +149,34 @@ impl<'a> RowJudge<'a> {
     }
 
     /// A frame, wrong or not, as one that may be kept.
-    fn offered<'n>(&self, name: &'n str, expected: &Frame, is_whole: bool, is_wrong: bool) -> Offered<'n> {
-        let is_street = name == STREET;
+    fn offered<'n>(&self, frame: &'n InFlight) -> Offered<'n> {
+        let Prepared { name, is_street, expected, .. } = &frame.prepared;
         Offered {
             name,
             // Rows that did not come back are black.
-            differs: is_wrong || !is_whole,
-            is_wanted: is_wrong || self.options.keep_equal || is_street,
-            is_pinned: is_street && self.options.first_rows.is_none(),
+            differs: frame.is_wrong() || !frame.is_whole(),
+            is_wanted: frame.is_wrong() || self.options.keep_equal || *is_street,
+            is_pinned: *is_street && self.options.first_rows.is_none(),
             bytes: 3 * size_of_val(expected.samples()),
         }
     }
 
-    fn frame_done(&mut self, frame: InFlight) {
-        let InFlight { prepared, found, returned, rows, comparison } = frame;
-        let Prepared { name, number, generation, sha256, input, expected, centre } = prepared;
-        self.seen.shown.note(&input, &expected, centre);
-        let (is_whole, budget) = (rows >= expected.height(), self.options.evidence_bytes);
-        let missing = MissingRows::of(&returned);
-        let offered = self.offered(&name, &expected, is_whole, comparison.differences > 0);
+    fn frame_done(&mut self, mut frame: InFlight) {
+        let (found, missing) = (mem::take(&mut frame.found), MissingRows::of(&frame.returned));
+        let Prepared { input, expected, centre, .. } = &frame.prepared;
+        self.seen.shown.note(input, expected, *centre);
+        let (is_whole, budget) = (frame.is_whole(), self.options.evidence_bytes);
+        let offered = self.offered(&frame);
         if is_whole || offered.is_wanted {
             let index = self.seen.frames.len();
             self.seen.evidence.offer(&offered, budget, || {
-                let found = as_found(&expected, found)?;
-                let (input, expected) = ((*input).clone(), (*expected).clone());
+                let found = as_found(expected, found)?;
+                let (input, expected) = (Frame::clone(input), Frame::clone(expected));
                 Some(Evidence { index, input, found, expected, missing: missing.clone() })
             });
         }
+        let InFlight { prepared, rows, comparison, .. } = frame;
+        let Prepared { name, number, generation, sha256, input, .. } = prepared;
         let comparison = self.seen.evidence.shorten(comparison, is_whole, budget);
         self.seen.frames.push(FrameReport {
             name,
@@ -217,16 +207,9 @@ impl RowTraffic for RowJudge<'_> {
                 return None;
             }
         };
-        let (width, height) = (prepared.expected.width(), prepared.expected.height());
         let numbered = prepared.numbered();
         self.progress.frame(&prepared.name);
-        self.in_flight.push_back(InFlight {
-            prepared,
-            found: vec![0; width * height],
-            returned: vec![false; height],
-            rows: 0,
-            comparison: Comparison::new(width, height),
-        });
+        self.in_flight.push_back(InFlight::new(prepared));
         Some(numbered)
     }
 
@@ -259,10 +242,8 @@ impl RowTraffic for RowJudge<'_> {
         frame.found[row.row * width..][..width].copy_from_slice(row.samples);
         frame.rows += 1;
         let mut flow = ControlFlow::Continue(());
-        while let Some(front) =
-            self.in_flight.pop_front_if(|front| front.rows == front.prepared.expected.height())
-        {
-            if front.comparison.differences > 0 && self.options.fail_fast {
+        while let Some(front) = self.in_flight.pop_front_if(|front| front.is_whole()) {
+            if front.is_wrong() && self.options.fail_fast {
                 flow = ControlFlow::Break(());
             }
             self.frame_done(front);
@@ -290,6 +271,7 @@ mod tests {
         let (name, sha256) = (String::new(), String::new());
         Prepared {
             name,
+            is_street: false,
             number,
             generation: 2,
             sha256,
