@@ -60,15 +60,47 @@ impl From<Awaited> for Answer {
     }
 }
 
-/// A reply to RECORDS without what is not compared: pauses, which a board cannot help, and flags but the known one, which is
-/// compared if `tells` is true.
-pub(super) fn looked_at(mut payload: Vec<u8>, tells: bool) -> Vec<u8> {
-    let records = payload.get_mut(Records::HEAD..).unwrap_or_default();
-    for record in records.as_chunks_mut().0 {
-        let told = FrameRecord::from(*record);
-        *record = FrameRecord { pauses: 0, held_back: tells && told.held_back, ..told }.to_bytes();
+/// The records that RECORDS must give, and no others.
+#[derive(Clone)]
+pub(super) struct Told<'a> {
+    pub(super) burst: &'a Burst,
+    pub(super) frames: Range<u32>,
+    pub(super) state: BurstState,
+    pub(super) held: Held<'a>,
+}
+
+impl<'a> Told<'a> {
+    /// Those of `frames` of a `burst` that has ended, none of which waited for a free record.
+    pub(super) fn ended(burst: &'a Burst, frames: Range<u32>) -> Self {
+        Self { burst, frames, state: BurstState::Ended, held: Held::Only(&[]) }
     }
-    payload
+}
+
+/// Which frames waited for a free record.
+#[derive(Clone, Copy)]
+pub(super) enum Held<'a> {
+    /// Nobody knows, so it is not compared.
+    Any,
+    /// These.
+    Only(&'a [u32]),
+}
+
+impl Held<'_> {
+    fn has(self, frame: u32) -> bool {
+        matches!(self, Self::Only(frames) if frames.contains(&frame))
+    }
+
+    /// A reply to RECORDS without what is not compared: pauses, which a board cannot help, and flags but that of a frame that
+    /// waited, where that is known.
+    pub(super) fn looked_at(self, mut payload: Vec<u8>) -> Vec<u8> {
+        let records = payload.get_mut(Records::HEAD..).unwrap_or_default();
+        for record in records.as_chunks_mut().0 {
+            let told = FrameRecord::from(*record);
+            let held_back = told.held_back && matches!(self, Self::Only(_));
+            *record = FrameRecord { pauses: 0, held_back, ..told }.to_bytes();
+        }
+        payload
+    }
 }
 
 impl Rules<'_, '_> {
@@ -136,7 +168,7 @@ impl Rules<'_, '_> {
             }
             let burst = self.start(Burst { frame_blanking, ..burst })?;
             self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
-            self.must_tell(Rule::Burst, &burst, 0..FEW, BurstState::Ended, Some(&[]))?;
+            self.must_tell(Rule::Burst, &Told::ended(&burst, 0..FEW))?;
         }
         Ok(())
     }
@@ -160,24 +192,19 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// The right reply of RECORDS with `frames` of `burst`, of which those in `held` waited for a record.
-    pub(super) fn records(
-        &self,
-        burst: &Burst,
-        frames: Range<u32>,
-        state: BurstState,
-        held: &[u32],
-    ) -> Vec<u8> {
+    /// The right reply of RECORDS.
+    pub(super) fn records(&self, told: &Told<'_>) -> Vec<u8> {
+        let Told { burst, frames, state, held } = told;
         let made = self.small.made(0, self.small.rows(), super::rows::GENERATION);
         let mut signer = signer(&made);
         let records = frames.clone().map(|n| {
-            let held_back = held.contains(&n);
+            let held_back = held.has(n);
             FrameRecord { held_back, ..self.record((&made, &mut signer), burst, n) }.to_bytes()
         });
         let mut said = Vec::new();
         said.extend(burst.burst.to_le_bytes());
         said.extend(frames.start.to_le_bytes());
-        said.extend([state as u8, frames.len() as u8]);
+        said.extend([*state as u8, frames.len() as u8]);
         said.extend(records.flatten());
         said
     }
@@ -254,7 +281,7 @@ impl Rules<'_, '_> {
         self.replied(Rule::Ended, &Request::Burst(Burst { frames: 0, ..burst }), Vec::new())?;
         let ended = self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
         let came = ended.records.len() as u32;
-        self.must_tell(Rule::Records, &burst, 0..came, BurstState::Ended, Some(&[]))?;
+        self.must_tell(Rule::Records, &Told::ended(&burst, 0..came))?;
         // If there are more than fit a packet, it is not known where they end.
         if (came as usize) < Records::MOST { self.never_told(0..came) } else { Ok(()) }
     }
@@ -267,7 +294,7 @@ impl Rules<'_, '_> {
             self.run.board.cut(&burst, bytes).map_err(of_board)?;
             // If the request was lost, there is no burst.
             if let Some(came) = self.came_of(&burst)? {
-                self.must_tell(Rule::Cut, &burst, 0..came, BurstState::Ended, Some(&[]))?;
+                self.must_tell(Rule::Cut, &Told::ended(&burst, 0..came))?;
             }
             self.right_frames(&[super::rows::FRAME])?;
             self.right_burst(Rule::Cut, BurstMode::Fresh)?;
@@ -297,7 +324,7 @@ impl Rules<'_, '_> {
         let Some(burst) = self.small_burst(FEW) else { return Ok(()) };
         let burst = self.start(Burst { mode, ..burst })?;
         self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
-        self.must_tell(rule, &burst, 0..FEW, BurstState::Ended, Some(&[]))
+        self.must_tell(rule, &Told::ended(&burst, 0..FEW))
     }
 
     /// A burst that repeats a frame, whose rows must be in no counter.

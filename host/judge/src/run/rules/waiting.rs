@@ -6,7 +6,7 @@ use std::time::Duration;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Burst, BurstState, Records, RefusalCode, Request};
 
-use super::bursts::{Awaited, LONGEST_IDLE, PATIENCE, looked_at};
+use super::bursts::{Awaited, Held, LONGEST_IDLE, PATIENCE, Told};
 use super::{Rules, of_board};
 use crate::board::Response;
 use crate::result::Rule;
@@ -58,8 +58,10 @@ impl Rules<'_, '_> {
                 // Now fewer frames than were asked for first.
                 self.set_frames(&burst, all)?;
             }
-            let frames = from..from + kept;
-            if !self.tells_held(&burst, frames.clone(), BurstState::UnderWay, &held, left_waiting)? {
+            let (frames, held_back) = (from..from + kept, Held::Only(&held));
+            let ended = Told::ended(&burst, frames.clone());
+            let under_way = Told { state: BurstState::UnderWay, held: held_back, ..ended };
+            if !self.tells_held(&under_way, left_waiting)? {
                 return Ok(false);
             }
             self.never_told(frames)?;
@@ -68,29 +70,23 @@ impl Rules<'_, '_> {
             from += taken;
         }
         self.look(&burst, from, kept, Awaited::ended(all - from))?;
-        if !self.tells_held(&burst, from..all, BurstState::Ended, &held, left_waiting)? {
+        let ended = |from| Told { held: Held::Only(&held), ..Told::ended(&burst, from..all) };
+        if !self.tells_held(&ended(from), left_waiting)? {
             return Ok(false);
         }
         self.stays(&burst, 2 * all)?;
         for from in from..=all {
-            self.must_tell(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
+            self.must_tell(Rule::Records, &ended(from))?;
         }
         self.never_told(all..all)?;
         Ok(true)
     }
 
-    /// RECORDS must give the records of `frames`. Returns whether those in `held`, and no others, say that they were held back;
-    /// after the longest time they must.
-    fn tells_held(
-        &mut self,
-        burst: &Burst,
-        frames: Range<u32>,
-        state: BurstState,
-        held: &[u32],
-        left_waiting: Duration,
-    ) -> Result<bool, End> {
-        self.must_tell(Rule::Records, burst, frames.clone(), state, None)?;
-        match self.must_tell(Rule::Records, burst, frames, state, Some(held)) {
+    /// RECORDS must give the records that are `told`. Returns whether those of frames that waited, and no others, say so; after
+    /// the longest time they must.
+    fn tells_held(&mut self, told: &Told<'_>, left_waiting: Duration) -> Result<bool, End> {
+        self.must_tell(Rule::Records, &Told { held: Held::Any, ..told.clone() })?;
+        match self.must_tell(Rule::Records, told) {
             Err(end) if end.is_failed() && left_waiting < PATIENCE => Ok(false),
             told => told.map(|()| true),
         }
@@ -124,7 +120,8 @@ impl Rules<'_, '_> {
             if from == 0 {
                 self.busy_with_burst(&burst)?;
             }
-            self.must_tell(Rule::Records, &burst, frames, BurstState::UnderWay, Some(&[]))?;
+            let under_way = Told { state: BurstState::UnderWay, ..Told::ended(&burst, frames) };
+            self.must_tell(Rule::Records, &under_way)?;
             self.never_told(from..from + kept)?;
         }
         // One more frame than there are records for, so that the burst has not ended yet.
@@ -133,15 +130,16 @@ impl Rules<'_, '_> {
         let from = taken + 1;
         self.look(&burst, from, all.unwrap_or(AT_ONCE), Awaited::ended(AT_ONCE))?;
         let end = all.unwrap_or(from + AT_ONCE);
+        let ended = |frames| Told { held: Held::Any, ..Told::ended(&burst, frames) };
         let mut last = from..end;
         for from in (from..end).step_by(Records::MOST) {
             last = from..end.min(from + AT_ONCE);
-            self.must_tell(Rule::Records, &burst, last.clone(), BurstState::Ended, None)?;
+            self.must_tell(Rule::Records, &ended(last.clone()))?;
         }
         self.stays(&burst, 2 * end)?;
-        self.must_tell(Rule::Records, &burst, last, BurstState::Ended, None)?;
+        self.must_tell(Rule::Records, &ended(last))?;
         let Some(all) = all else { return Ok(()) };
-        self.must_tell(Rule::Records, &burst, all..all, BurstState::Ended, None)?;
+        self.must_tell(Rule::Records, &ended(all..all))?;
         self.never_told(all..all)
     }
 
@@ -155,19 +153,12 @@ impl Rules<'_, '_> {
         self.drop_rows()
     }
 
-    /// RECORDS must give the records of `frames` and no others, of which those in `held`, if that is known, waited for a
-    /// free one. The request frees the records before these.
-    pub(super) fn must_tell(
-        &mut self,
-        rule: Rule,
-        burst: &Burst,
-        frames: Range<u32>,
-        state: BurstState,
-        held: Option<&[u32]>,
-    ) -> Result<(), End> {
-        let right = self.records(burst, frames.clone(), state, held.unwrap_or_default());
-        let said = self.run.board.ask(Kind::Records, &frames.start.to_le_bytes()).map(|said| match said {
-            Response::Replied(payload) => Response::Replied(looked_at(payload, held.is_some())),
+    /// RECORDS must give what is `told`. The request frees the records before these.
+    pub(super) fn must_tell(&mut self, rule: Rule, told: &Told<'_>) -> Result<(), End> {
+        let right = self.records(told);
+        let from = told.frames.start.to_le_bytes();
+        let said = self.run.board.ask(Kind::Records, &from).map(|said| match said {
+            Response::Replied(payload) => Response::Replied(told.held.looked_at(payload)),
             refused => refused,
         });
         self.judge(rule, Kind::Records, said, &Response::Replied(right))
