@@ -50,14 +50,12 @@ pub(super) struct BurstPlan {
 }
 
 impl BurstPlan {
-    /// A burst with no frames yet, whose frames have the size of `geometry` and whose seed is draw number `draw` from the
-    /// run's seed. The greater `datapath` of the tables in both banks decides how far its rows are apart.
+    /// A burst with no frames yet, whose frames have the size of `geometry`, each with new content. The greater `datapath` of
+    /// the tables in both banks decides how far its rows are apart.
     pub(super) fn new(
         geometry: &Geometry,
-        seed: u64,
         capabilities: &Capabilities,
         bursts: Bursts,
-        (mode, draw): (BurstMode, u32),
         datapath: Datapath,
     ) -> Self {
         let (width, height) = (geometry.width(), geometry.height());
@@ -65,8 +63,8 @@ impl BurstPlan {
         let frame_blanking = frame_blanking(capabilities, bursts, width, datapath);
         Self {
             frames: 0,
-            mode,
-            seed: telling_seed((seed.wrapping_add(1 + u64::from(draw)).wrapping_mul(GOLDEN) >> 32) as u32),
+            mode: BurstMode::Fresh,
+            seed: 0,
             first_frame: 0,
             bursts,
             frame_blanking,
@@ -76,6 +74,23 @@ impl BurstPlan {
             rows: height as u16,
             latency: width as u16 / 2 + u16::from(capabilities.latency),
         }
+    }
+
+    /// The same with the seed that is draw number `draw` from the run's `seed`.
+    pub(super) fn drawn(self, seed: u64, draw: u32) -> Self {
+        let drawn = seed.wrapping_add(1 + u64::from(draw)).wrapping_mul(GOLDEN) >> 32;
+        Self { seed: telling_seed(drawn as u32), ..self }
+    }
+
+    /// The same, made with `tables` by turns.
+    pub(super) fn made_with(self, tables: &[Generation]) -> Self {
+        let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
+        Self { mode, ..self }
+    }
+
+    /// The same with `frames` frames.
+    pub(super) fn of_frames(self, frames: u32) -> Self {
+        Self { frames, ..self }
     }
 
     /// A burst of `frames` frames, all with the content of frame `n`, with the trap set.

@@ -115,9 +115,7 @@ fn weigh<E>(
 
 /// The burst in which a clock is looked at again. It need not be longer than a usual one.
 fn to_look_again(plan: &BurstPlan) -> BurstPlan {
-    let mut usual = *plan;
-    usual.frames = plan.frames.min(plan.frames_in(USUAL));
-    usual
+    plan.of_frames(plan.frames.min(plan.frames_in(USUAL)))
 }
 
 impl Run<'_> {
@@ -187,7 +185,7 @@ impl Run<'_> {
 #[cfg(test)]
 mod tests {
     use halfrow_model::{BitDepth, Geometry};
-    use halfrow_protocol::message::{BurstMode, FrameRecord};
+    use halfrow_protocol::message::FrameRecord;
 
     use super::*;
     use crate::board::{Capabilities, Datapath};
@@ -200,14 +198,7 @@ mod tests {
         let tables = halfrow_model::TableSet::from_lens(geometry, &lens, None).unwrap();
         let plan = Plan::new(tables, halfrow_model::Interpolant::Hermite.into());
         let board = Capabilities { clock_hz: 10_000, ..usual_capabilities(&plan, BoardNature::Hardware) };
-        BurstPlan::new(
-            &geometry,
-            1,
-            &board,
-            board.bursts.unwrap(),
-            (BurstMode::Fresh, 0),
-            Datapath::RowFactors,
-        )
+        BurstPlan::new(&geometry, &board, board.bursts.unwrap(), Datapath::RowFactors)
     }
 
     /// What is seen of a burst that began within the first 10 ms. Each look is: the records that come, how many of them
@@ -296,11 +287,7 @@ mod tests {
     /// 3 s of 10 kHz are 57 frames of 520 clocks.
     #[test]
     fn an_hour_is_not_made_again_for_the_clock() {
-        let frames = |asked| {
-            let mut plan = plan();
-            plan.frames = asked;
-            to_look_again(&plan).frames
-        };
+        let frames = |asked| to_look_again(&plan().of_frames(asked)).frames;
         assert_eq!([3, 57, 58, 70_000].map(frames), [3, 57, 57, 57]);
     }
 

@@ -158,16 +158,11 @@ impl Run<'_> {
             let in_corner =
                 |end: End| end.failed_as(|found| Finding::InCorner { corner: Corner::from(active), found });
             self.upload_corner(tables).map_err(in_corner)?;
-            let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-            let mut plan = BurstPlan::new(
-                active.geometry(),
-                self.plan.seed,
-                &capabilities,
-                bursts,
-                (mode, FIRST_CORNER + place),
-                datapath_of_all(tables),
-            );
-            plan.frames = 2;
+            let datapath = datapath_of_all(tables);
+            let plan = BurstPlan::new(active.geometry(), &capabilities, bursts, datapath)
+                .drawn(self.plan.seed, FIRST_CORNER + place)
+                .made_with(tables)
+                .of_frames(2);
             let watched = self.judge_frames(&plan, tables).map_err(in_corner)?;
             if watched.paused == 0 {
                 self.note_shown(&plan, tables, seen);
@@ -226,12 +221,9 @@ impl Run<'_> {
     }
 
     fn burst_plan(&self, bursts: Bursts, tables: &[Generation]) -> BurstPlan {
-        let capabilities = &self.board.capabilities;
-        let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-        let mut plan = price::usual_burst(self.plan, capabilities, bursts, mode);
+        let usual = price::usual_burst(self.plan, &self.board.capabilities, bursts).made_with(tables);
         let most = u32::try_from(self.plan.amount(Part::AtSpeed)).unwrap_or(u32::MAX);
-        plan.frames = plan.frames.min(most.max(2));
-        plan
+        usual.of_frames(usual.frames.min(most.max(2)))
     }
 
     /// Notes that all frames of `plan` are right, of which `paused` had pauses.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use halfrow_model::Geometry;
-use halfrow_protocol::message::{BurstMode, FrameRecord};
+use halfrow_protocol::message::FrameRecord;
 
 use super::burst::{BurstPlan, USUAL_CLOCK, datapath_of_all};
 use super::{FEW_AT_SPEED, USUAL, corners};
@@ -20,34 +20,22 @@ const MOST_LOOKS: u32 = 1 << 14;
 const HALF_OF_THEM: u32 = MOST_LOOKS / 2;
 
 /// The burst of a usual run, with as many frames as `plan` asks for on a board with these `capabilities`.
-pub(super) fn usual_burst(
-    plan: &Plan,
-    capabilities: &Capabilities,
-    bursts: Bursts,
-    mode: BurstMode,
-) -> BurstPlan {
-    let mut burst = burst_of(plan, capabilities, bursts, (mode, 0));
-    burst.frames = match plan.at_speed {
+pub(super) fn usual_burst(plan: &Plan, capabilities: &Capabilities, bursts: Bursts) -> BurstPlan {
+    let burst = burst_of(plan, capabilities, bursts, 0);
+    burst.of_frames(match plan.at_speed {
         AtSpeed::Off => burst.frames_in(Duration::ZERO),
         AtSpeed::For(time) => burst.frames_in(time),
         AtSpeed::Usual | AtSpeed::Soak(_) if capabilities.nature == BoardNature::Hardware => {
             burst.frames_in(USUAL)
         }
         AtSpeed::Usual | AtSpeed::Soak(_) => FEW_AT_SPEED,
-    };
-    burst
+    })
 }
 
-/// A burst with no frames yet of the tables of `plan`.
-pub(super) fn burst_of(
-    plan: &Plan,
-    capabilities: &Capabilities,
-    bursts: Bursts,
-    mode_and_draw: (BurstMode, u32),
-) -> BurstPlan {
+/// A burst with no frames yet of the tables of `plan`, whose seed is draw number `draw`.
+pub(super) fn burst_of(plan: &Plan, capabilities: &Capabilities, bursts: Bursts, draw: u32) -> BurstPlan {
     let tables = &plan.tables;
-    let datapath = datapath_of(tables);
-    BurstPlan::new(tables.geometry(), plan.seed, capabilities, bursts, mode_and_draw, datapath)
+    BurstPlan::new(tables.geometry(), capabilities, bursts, datapath_of(tables)).drawn(plan.seed, draw)
 }
 
 /// The pixel clock of a board, in hertz; the usual one if it names none.
@@ -57,7 +45,7 @@ pub(in crate::run) fn clock_hz(capabilities: &Capabilities) -> u32 {
 
 /// The frames of the usual burst; none on a board that makes no bursts.
 pub(in crate::run) fn most_frames(prices: &Prices<'_>) -> usize {
-    let frames = |bursts| usual_burst(prices.plan, prices.capabilities, bursts, BurstMode::Fresh).frames;
+    let frames = |bursts| usual_burst(prices.plan, prices.capabilities, bursts).frames;
     prices.capabilities.bursts.map_or(0, frames) as usize
 }
 
@@ -90,8 +78,7 @@ pub(in crate::run) fn price_of_corners(prices: &Prices<'_>) -> f64 {
 /// The price of a burst of `frames` frames, from the request on. Each look takes the records that exist by then, if any.
 fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32, datapath: Datapath) -> f64 {
     let Some(bursts) = prices.capabilities.bursts else { return 0.0 };
-    let (seed, mode_and_draw) = (prices.plan.seed, (BurstMode::Fresh, 0));
-    let burst = BurstPlan::new(geometry, seed, prices.capabilities, bursts, mode_and_draw, datapath);
+    let burst = BurstPlan::new(geometry, prices.capabilities, bursts, datapath);
     let (frame, look) = (burst.seconds(1), |records| {
         prices.rates.request(LOOK.0, LOOK.1 + records as usize * FrameRecord::BYTES)
     });

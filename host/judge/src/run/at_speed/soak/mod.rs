@@ -6,8 +6,6 @@ mod played;
 
 use std::time::Duration;
 
-use halfrow_protocol::message::BurstMode;
-
 use super::burst::{BurstPlan, LONGEST_LOOK};
 use super::watched::{BurstSeen, EndsEarly, Miscount};
 use super::{NONE, price};
@@ -87,7 +85,7 @@ impl Run<'_> {
         let capabilities = &self.board.capabilities;
         let has_decoy = self.generations.iter().any(|generation| generation.number == DECOY);
         let changes = has_decoy && capabilities.table_banks > 1;
-        let plan = price::burst_of(self.plan, capabilities, bursts, (BurstMode::Fresh, 0));
+        let plan = price::burst_of(self.plan, capabilities, bursts, 0);
         self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, ..NONE });
         Ok(Exercised { left: super::untested(changes, paused > 0), ..Exercised::default() })
     }
@@ -170,11 +168,10 @@ impl Run<'_> {
             self.open_another_session()?;
         }
         let tables = self.tables_of_burst(draw)?;
-        let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-        let mut plan = price::burst_of(self.plan, &self.board.capabilities, bursts, (mode, draw));
+        let plan = price::burst_of(self.plan, &self.board.capabilities, bursts, draw).made_with(&tables);
         let (now, earlier, progress) = (self.board.now(), self.sessions.earlier(), self.progress);
         let time = account.time_of_burst(earlier + now);
-        plan.frames = account.frames_of_burst(&plan, time);
+        let mut plan = plan.of_frames(account.frames_of_burst(&plan, time));
         if let Some(active) = tables.first().filter(|_| is_trapped(draw) && plan.has_trap()) {
             plan = plan.trapping(0, plan.frames);
             self.expect(&plan, active)?;
