@@ -60,7 +60,7 @@ fn step(
 /// How many more faults each amount of a part finds, taken by itself.
 fn gains(prices: &Prices<'_>, faults: &Faults, selection: &Selection) -> BTreeMap<(Part, usize), usize> {
     let parts: Vec<_> =
-        prices.parts().into_iter().filter(|&part| is_as_measured(prices.plan(), part)).collect();
+        prices.parts().into_iter().filter(|&part| is_as_measured(prices.plan, part)).collect();
     let mut gains = BTreeMap::new();
     for (fault, count) in faults.groups.iter().filter(|(fault, _)| !fault.is_found(selection)) {
         let at_speed = fault.at_speed.then_some((Part::AtSpeed, FRAMES));

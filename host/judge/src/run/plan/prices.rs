@@ -111,10 +111,6 @@ impl<'a> Prices<'a> {
         Self { corners, ..prices }
     }
 
-    pub(crate) fn plan(&self) -> &'a Plan {
-        self.plan
-    }
-
     /// Every part that the plan has on this board.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {
@@ -151,9 +147,9 @@ impl<'a> Prices<'a> {
         Prices::new(self.plan, &capabilities, self.rates).seconds(selection)
     }
 
-    /// The pixel clock that the board names; 0 for none.
-    pub(crate) fn named_clock_hz(&self) -> u32 {
-        self.capabilities.clock_hz
+    /// The pixel clock that the board names, in hertz; none if it names none.
+    pub(crate) fn named_clock(&self) -> Option<u32> {
+        Some(self.capabilities.clock_hz).filter(|&clock_hz| clock_hz != 0)
     }
 
     /// What all of `part`, with what the part needs, adds to the shortest run, in seconds.

@@ -130,34 +130,32 @@ fn fitting(prices: &Prices<'_>, build: &str, time: Time) -> Chosen {
     };
     let mut from = Selection::least();
     if let Some(least) = least_for(&from) {
-        let clock_hz = prices.named_clock_hz();
-        let is_of_clock = clock_hz != 0 && prices.at_the_usual_clock(&from) <= left;
-        return Err(match is_of_clock {
-            true => WithinError::TooFewOfClock { seconds, least, clock_hz },
-            false => WithinError::TooFew { seconds, least },
+        let of_clock = prices.named_clock().filter(|_| prices.at_the_usual_clock(&from) <= left);
+        return Err(match of_clock {
+            Some(clock_hz) => WithinError::TooFewOfClock { seconds, least, clock_hz },
+            None => WithinError::TooFew { seconds, least },
         });
     }
-    if matches!(prices.plan().at_speed, AtSpeed::For(_)) && prices.parts().contains(&Part::AtSpeed) {
+    if matches!(prices.plan.at_speed, AtSpeed::For(_)) && prices.parts().contains(&Part::AtSpeed) {
         from = from.with(Part::AtSpeed, prices.most(Part::AtSpeed));
         if let Some(least) = least_for(&from) {
             return Err(WithinError::AtSpeed { seconds, least });
         }
     }
     let mut choice = coverage::choose(prices, faults, &from, left);
-    choice.selection = prices.plan().streamable(&choice.selection);
-    let measured = faults.are_of(prices.plan(), build);
-    let report = report(prices, faults, measured, &choice, time);
+    choice.selection = prices.plan.streamable(&choice.selection);
+    let report = report(prices, faults, build, &choice, time);
     Ok((choice.selection, report))
 }
 
 fn report(
     prices: &Prices<'_>,
     faults: &Faults,
-    measured: bool,
+    build: &str,
     choice: &coverage::Choice,
     Time { seconds, spent, .. }: Time,
 ) -> WithinReport {
-    let plan = prices.plan();
+    let plan = prices.plan;
     let part = |part: Part| WithinPart {
         part: plan.name_of(part),
         taken: choice.selection.amount(part).min(prices.most(part)),
@@ -177,7 +175,7 @@ fn report(
         },
         parts,
         faults: here.count(),
-        measured,
+        measured: faults.are_of(plan, build),
         measured_at: faults.size().into(),
         curve: curve(prices, faults, spent),
     }
@@ -185,7 +183,7 @@ fn report(
 
 /// What more and more parts find, and at last a whole run, which also finds faults that no single part is known to find.
 fn curve(prices: &Prices<'_>, faults: &Faults, spent: f64) -> Vec<CoveragePoint> {
-    let here = faults.scaled(prices.plan().tables.geometry().height());
+    let here = faults.scaled(prices.plan.tables.geometry().height());
     let least = Selection::least();
     let whole = prices.parts().into_iter().fold(least, |whole, part| whole.with(part, prices.most(part)));
     let whole = CoveragePoint { seconds: spent + prices.seconds(&whole), found: here.found_by_whole() };
