@@ -377,6 +377,6 @@ pub(crate) fn lists() -> impl Iterator<Item = &'static CodeList> {
 pub(crate) fn all() -> Vec<Value> {
     let library = codes::LISTS.into_iter().flatten().chain(program::lists());
     let typed = lists().chain(library).flat_map(|list| list.codes).map(|(code, _)| *code);
-    let others = codes::IO_CODES.into_iter().chain(program::USAGE).chain(program::UNTYPED);
+    let others = codes::io_codes().into_iter().chain(program::USAGE).chain(program::UNTYPED);
     typed.chain(others).map(Value::from).collect()
 }

@@ -196,7 +196,7 @@ fn error_lists() -> impl Iterator<Item = &'static CodeList> {
 /// Codes of errors without a type of their own.
 fn other_codes() -> impl Iterator<Item = &'static str> {
     let lost = [RECORDING_LOST, REPORT_LOST];
-    codes::IO_CODES.into_iter().chain(program::USAGE).chain(lost).chain(program::UNTYPED)
+    codes::io_codes().into_iter().chain(program::USAGE).chain(lost).chain(program::UNTYPED)
 }
 
 /// Every code with the names of its parameters.

@@ -18,15 +18,22 @@ const USUAL_LINKS: [(&str, f64); 3] =
 /// The assumed round trip over a link that was not measured, in seconds.
 const ROUND_TRIP: f64 = 0.001;
 
-/// What the document calls the tables that the run is about.
-const JUDGED: &str = "judged";
+/// With which tables a frame would be corrected.
+#[derive(Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Tables {
+    /// Those that the run is about.
+    Judged,
+    /// Those before them, so that the change is judged too.
+    Decoy,
+}
 
 /// A frame that would be streamed.
 #[derive(Serialize)]
 struct Listed {
     number: u16,
     name: String,
-    tables: &'static str,
+    tables: Tables,
     timing: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     variation: Option<Variation>,
@@ -63,7 +70,10 @@ pub(super) fn list(plan: &Plan, target: &Target, as_json: bool) -> Result<Exit, 
     }
     let line = |Listed { number, name, tables, timing, variation }: &Listed| {
         let variation = variation.map_or_else(String::new, |variation| format!(", {variation}"));
-        let tables = if *tables == JUDGED { "your" } else { tables };
+        let tables = match tables {
+            Tables::Judged => "your",
+            Tables::Decoy => "decoy",
+        };
         format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}{variation}")
     };
     let mut lines: Vec<_> = listed.iter().map(line).collect();
@@ -85,7 +95,7 @@ fn listing(plan: &Plan) -> Vec<Listed> {
         };
         let variation = plan.variation(&segment.geometry);
         listed.extend(segment.frames.iter().map(|frame| {
-            let tables = if frame.generation == run::DECOY { "decoy" } else { JUDGED };
+            let tables = if frame.generation == run::DECOY { Tables::Decoy } else { Tables::Judged };
             Listed { number: frame.number, name: frame.source.name(), tables, timing, variation }
         }));
     }

@@ -61,32 +61,30 @@ pub fn lookup(error: &(dyn Error + 'static)) -> Option<Coded> {
     })
 }
 
-/// The operating system refused an operation. The parameter `os_error` is the system's number, if there is one.
-pub const IO_CODES: [&str; 9] = [
-    "io-not-found",
-    "io-not-permitted",
-    "io-already-there",
-    "io-no-space",
-    "io-pipe-closed",
-    "io-too-late",
-    "io-ends-early",
-    "io-wrong-data",
-    "io-failed",
+/// The code for what the operating system refused and that has no other.
+const IO_FAILED: &str = "io-failed";
+
+/// The codes for what the operating system refuses, each with the kinds of error that it stands for.
+const IO: [(&str, &[io::ErrorKind]); 9] = [
+    ("io-not-found", &[io::ErrorKind::NotFound]),
+    ("io-not-permitted", &[io::ErrorKind::PermissionDenied]),
+    ("io-already-there", &[io::ErrorKind::AlreadyExists]),
+    ("io-no-space", &[io::ErrorKind::StorageFull, io::ErrorKind::FileTooLarge]),
+    ("io-pipe-closed", &[io::ErrorKind::BrokenPipe]),
+    ("io-too-late", &[io::ErrorKind::TimedOut]),
+    ("io-ends-early", &[io::ErrorKind::UnexpectedEof]),
+    ("io-wrong-data", &[io::ErrorKind::InvalidData]),
+    (IO_FAILED, &[]),
 ];
 
-const fn io_code(kind: io::ErrorKind) -> &'static str {
-    let place = match kind {
-        io::ErrorKind::NotFound => 0,
-        io::ErrorKind::PermissionDenied => 1,
-        io::ErrorKind::AlreadyExists => 2,
-        io::ErrorKind::StorageFull | io::ErrorKind::FileTooLarge => 3,
-        io::ErrorKind::BrokenPipe => 4,
-        io::ErrorKind::TimedOut => 5,
-        io::ErrorKind::UnexpectedEof => 6,
-        io::ErrorKind::InvalidData => 7,
-        _ => 8,
-    };
-    IO_CODES[place]
+/// The operating system refused an operation. The parameter `os_error` is the system's number, if there is one.
+#[must_use]
+pub fn io_codes() -> [&'static str; IO.len()] {
+    IO.map(|(code, _)| code)
+}
+
+fn io_code(kind: io::ErrorKind) -> &'static str {
+    IO.iter().find(|(_, kinds)| kinds.contains(&kind)).map_or(IO_FAILED, |(code, _)| code)
 }
 
 /// Makes `LISTS` and `lookup` from the codes of types of errors:

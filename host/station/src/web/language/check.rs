@@ -76,7 +76,7 @@ fn said() -> Keys {
     let of_station = station::LISTS.iter().filter(|list| OF_STATION.contains(&list.error));
     let typed = of_judge.chain(of_station).flat_map(|list| list.codes);
     let typed = typed.map(|(code, names)| (*code, names.iter().map(|name| (*name).to_owned()).collect()));
-    let of_system = codes::IO_CODES.map(|code| (code, BTreeSet::from(["os_error".to_owned()])));
+    let of_system = codes::io_codes().map(|code| (code, BTreeSet::from(["os_error".to_owned()])));
     let others = OTHERS.map(|code| (code, BTreeSet::new()));
     let known = typed.chain(of_system).chain(others).map(|(code, names)| (code.to_owned(), names));
     known.chain(findings()).chain(defects()).chain(not_exercised()).collect()
