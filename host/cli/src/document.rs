@@ -20,23 +20,13 @@ pub(crate) fn result_text(
 }
 
 /// Prints the result of a command that judges nothing and has no other output: it fails if stdout does not take it.
-pub(crate) fn print_result(
-    command: &str,
-    exit_code: Exit,
-    board: Option<&BoardReport>,
-    rest: impl Serialize,
-) -> Result<(), Failure> {
-    print(&result_text(command, exit_code, board, rest)?)
+pub(crate) fn print_result(command: &str, rest: impl Serialize) -> Result<(), Failure> {
+    print(&result_text(command, Exit::Pass, None, rest)?)
 }
 
 /// Prints the result of a command that has written files. The files remain, so it does not fail if stdout does not take
 /// the result.
-pub(crate) fn tell_result(
-    command: &str,
-    exit_code: Exit,
-    board: Option<&BoardReport>,
-    rest: impl Serialize,
-) -> Result<(), Failure> {
-    console::tell(&result_text(command, exit_code, board, rest)?);
+pub(crate) fn tell_result(command: &str, rest: impl Serialize) -> Result<(), Failure> {
+    console::tell(&result_text(command, Exit::Pass, None, rest)?);
     Ok(())
 }

@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         bitstreams = &BOARDS;
     }
     if context.json {
-        print_result("boards", Exit::Pass, None, Boards { boards: &entries, bitstreams })?;
+        print_result("boards", Boards { boards: &entries, bitstreams })?;
     } else {
         let lines: Vec<_> = entries.iter().map(text).chain(bitstreams.iter().map(bitstream_text)).collect();
         print(&lines.join("\n"))?;

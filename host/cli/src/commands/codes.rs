@@ -182,7 +182,7 @@ pub(crate) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
 
 pub(super) fn run(_: &Arguments, context: &Context) -> Result<Exit, Failure> {
     if context.json {
-        print_result("codes", Exit::Pass, None, json!({ "codes": all() }))?;
+        print_result("codes", json!({ "codes": all() }))?;
     } else {
         print(page().trim_end())?;
     }

@@ -193,7 +193,7 @@ fn report(as_json: bool, board: Option<BoardKind>, places: &Places, tables: &str
             .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
         let rest =
             json!({ "corrected_by": kind, "tables": tables, "outputs": outputs, "previews": previews });
-        tell_result("correct", Exit::Pass, None, rest)?;
+        tell_result("correct", rest)?;
         return Ok(Exit::Pass);
     }
     let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));

@@ -72,7 +72,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     // A document is whole or none; on a terminal, one unknown code takes nothing from the others.
     let is_shown = without.is_none() || !context.json && !found.is_empty();
     if is_shown && context.json {
-        print_result("explain", Exit::Pass, None, json!({ "codes": found }))?;
+        print_result("explain", json!({ "codes": found }))?;
     } else if is_shown {
         print(found.iter().map(text).collect::<Vec<_>>().join("\n").trim_end())?;
     }

@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         }
     }
     if context.json {
-        tell_result("frames", Exit::Pass, None, json!({ "files": written }))?;
+        tell_result("frames", json!({ "files": written }))?;
     }
     Ok(Exit::Pass)
 }

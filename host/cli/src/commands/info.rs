@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::{Context, Failure, print};
 use crate::arguments::board::BoardArguments;
-use crate::document::print_result;
+use crate::document::result_text;
 use crate::exit::Exit;
 use halfrow::board::{Board, Status};
 use halfrow::result::BoardReport;
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     if context.json {
         let counters: serde_json::Map<_, _> =
             status.counters().into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect();
-        print_result("info", Exit::Pass, Some(&report), json!({ "counters": counters }))?;
+        print(&result_text("info", Exit::Pass, Some(&report), json!({ "counters": counters }))?)?;
     } else {
         print(&text(&report, &status))?;
     }

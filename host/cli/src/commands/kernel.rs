@@ -164,7 +164,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
             "file": arguments.output.display().to_string(), "photographs": images.len(), "gain_db": trained.gain,
             "held_out_db": held_out(&trained), "mean_noise_gain": mean_noise_gain(&trained.kernel),
         });
-        tell_result("kernel", Exit::Pass, None, rest)?;
+        tell_result("kernel", rest)?;
         return Ok(Exit::Pass);
     }
     console::tell(&format!(
@@ -239,7 +239,7 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     let name = arguments.kernel.to_string_lossy();
     if context.json {
         let rest = json!({ "kernel": name, "gains_db": measured, "noise_gain": noise });
-        print_result("kernel", Exit::Pass, None, rest)?;
+        print_result("kernel", rest)?;
         return Ok(Exit::Pass);
     }
     let mut lines = vec![format!("{name} on {}, over Hermite in dB", count(images.len(), "photograph"))];

@@ -53,8 +53,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         let drawn = most.map(|most| json!({ "file": arguments.map.as_ref().map(|path| path.display().to_string()), "brightest_px": most }));
         let result = figures.json(drawn.as_ref());
         match drawn {
-            Some(_) => tell_result("lens", Exit::Pass, None, result)?,
-            None => print_result("lens", Exit::Pass, None, result)?,
+            Some(_) => tell_result("lens", result)?,
+            None => print_result("lens", result)?,
         }
         return Ok(Exit::Pass);
     }

@@ -22,7 +22,7 @@ use crate::arguments::board::wrong_board;
 use crate::arguments::given::Given;
 use crate::bitstreams::{BOARDS, BitstreamBoard};
 use crate::call_error::CallError;
-use crate::document::tell_result;
+use crate::document::result_text;
 use crate::exit::Exit;
 use crate::{console, pool, signals};
 use halfrow::board::{Board, BoardError, OpenOptions, Stop, WhenHeld};
@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         compared,
     };
     if context.json {
-        tell_result("load", Exit::Pass, report.as_ref(), json!({ "loaded": loaded }))?;
+        console::tell(&result_text("load", Exit::Pass, report.as_ref(), json!({ "loaded": loaded }))?);
     } else {
         console::tell(&text(&loaded, report.as_ref()));
     }

@@ -57,7 +57,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         let places = format.places(&arguments.output);
         let names: Vec<_> = places.iter().map(|path| path.display().to_string()).collect();
         let rest = json!({ "files": names, "source": chosen.source, "rows_outside_circle": outside });
-        tell_result("tables", Exit::Pass, None, rest)?;
+        tell_result("tables", rest)?;
         return Ok(Exit::Pass);
     }
     for path in format.places(&arguments.output) {

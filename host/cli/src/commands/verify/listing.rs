@@ -65,7 +65,7 @@ pub(super) fn list(plan: &Plan, target: &Target, as_json: bool) -> Result<Exit, 
     let (listed, links) = (listing(plan), on_links(plan, target));
     if as_json {
         let listed = serde_json::json!({ "listed": listed, "prices": links });
-        print_result("verify", Exit::Pass, None, listed)?;
+        print_result("verify", listed)?;
         return Ok(Exit::Pass);
     }
     let line = |Listed { number, name, tables, timing, variation }: &Listed| {
