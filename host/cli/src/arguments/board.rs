@@ -11,6 +11,7 @@ use halfrow_program::number::{any, number};
 
 use super::judging::time_limit;
 use crate::call_error::CallError;
+use crate::commands::Context;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::pool::{self, POOL};
@@ -120,9 +121,10 @@ impl BoardArguments {
     }
 
     /// The list of what a call reads and writes, with what its board reads and writes.
-    pub(crate) fn files(&self, overwrite: bool, settings: &Settings) -> Result<Files, Failure> {
-        let target = self.named(settings)?;
-        Ok(Files::new(overwrite)
+    pub(crate) fn files(&self, overwrite: bool, context: &Context) -> Result<Files, Failure> {
+        let target = self.named(&context.settings)?;
+        Ok(context
+            .files(overwrite)
             .reads(link::recording_file(&target))
             .writes_claimed(link::WRITTEN_FILE, link::written_file(&target)))
     }
@@ -132,9 +134,9 @@ impl BoardArguments {
         &self,
         is_asked: bool,
         overwrite: bool,
-        settings: &Settings,
+        context: &Context,
     ) -> Result<Files, Failure> {
-        if is_asked { self.files(overwrite, settings) } else { Ok(Files::new(overwrite)) }
+        if is_asked { self.files(overwrite, context) } else { Ok(context.files(overwrite)) }
     }
 
     /// The target that is named: a board, or a pool of some kind; by default the mock.

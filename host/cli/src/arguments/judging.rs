@@ -200,8 +200,7 @@ impl RunArguments {
         prepare_files(
             &self
                 .board
-                .files(self.overwrites(settings), settings)?
-                .reads(&context.settings_file)
+                .files(self.overwrites(settings), context)?
                 .reads(inputs)
                 .reads_kernel(self.kernel(settings))
                 .writes_claimed("--record", record)

@@ -7,7 +7,6 @@ use clap::Args;
 use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::files::{make_folder, prepare_files};
-use halfrow::call::Files;
 use halfrow::files::written_aside::write_aside;
 use halfrow_program::man_pages::{self, Shell};
 
@@ -35,10 +34,8 @@ pub(super) fn manual(arguments: &Manual, command: clap::Command, context: &Conte
     let folder = &arguments.folder;
     let pages = man_pages::all(command).map_err(Failure::error)?;
     let places: Vec<_> = pages.iter().map(|page| folder.join(&page.name)).collect();
-    prepare_files(
-        &Files::new(arguments.overwrite).reads(&context.settings_file).writes_into("FOLDER", &places),
-    )
-    .map_err(Failure::call)?;
+    prepare_files(&context.files(arguments.overwrite).writes_into("FOLDER", &places))
+        .map_err(Failure::call)?;
     make_folder(folder).map_err(Failure::error)?;
     for (page, place) in pages.iter().zip(&places) {
         write_aside(place, arguments.overwrite, |out| out.write_all(page.text.as_bytes()))

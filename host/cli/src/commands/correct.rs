@@ -82,8 +82,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
     let files = arguments
         .board
-        .files_if(!arguments.model, arguments.overwrite, settings)?
-        .reads(&context.settings_file)
+        .files_if(!arguments.model, arguments.overwrite, context)?
         .reads(arguments.tables.path(settings))
         .reads(arguments.lens.file())
         .reads_kernel(kernel);

@@ -13,7 +13,6 @@ use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
 use crate::files::{make_folder, prepare_files};
-use halfrow::call::Files;
 use halfrow::frames::{self, Builtin};
 
 #[derive(Debug, Args)]
@@ -45,10 +44,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let folder = &arguments.output;
     let places: Vec<_> = chosen.iter().map(|frame| folder.join(format!("{}.pgm", frame.name()))).collect();
     prepare_files(
-        &Files::new(arguments.overwrite)
-            .reads(&context.settings_file)
-            .reads(arguments.lens.file())
-            .writes_into("--output", &places),
+        &context.files(arguments.overwrite).reads(arguments.lens.file()).writes_into("--output", &places),
     )
     .map_err(Failure::call)?;
     make_folder(folder).map_err(Failure::error)?;

@@ -17,7 +17,6 @@ use crate::console;
 use crate::document::{print_result, tell_result};
 use crate::exit::Exit;
 use crate::files::prepare_files;
-use halfrow::call::Files;
 use halfrow::files::check_regular;
 use halfrow::frames::preview::RgbImage;
 use halfrow::frames::{FrameFile, landscape};
@@ -144,7 +143,7 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let paths = paths(&arguments.images).map_err(Failure::call)?;
     // Training takes minutes; a refusal after that would come too late.
-    let files = Files::new(arguments.overwrite).reads(&context.settings_file).reads(&paths);
+    let files = context.files(arguments.overwrite).reads(&paths);
     prepare_files(&files.writes("--output", [&arguments.output])).map_err(Failure::call)?;
     let (origins, images) = photographs(&paths).map_err(Failure::call)?;
     let taps = match arguments.taps {

@@ -13,7 +13,6 @@ use crate::console;
 use crate::document::{print_result, tell_result};
 use crate::exit::Exit;
 use crate::files::prepare_files;
-use halfrow::call::Files;
 use halfrow::frames::{self, HeatMap};
 use halfrow::lenses::LensContentError;
 use halfrow::optics::{Optics, OpticsError, TablesBy};
@@ -39,10 +38,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     arguments.given.refuse_void(Decider::ShownLens, &[]).map_err(Failure::call)?;
     arguments.map.as_deref().map_or(Ok(()), frames::check_png).map_err(Failure::call)?;
     prepare_files(
-        &Files::new(arguments.overwrite)
-            .reads(&context.settings_file)
-            .reads(arguments.lens.file())
-            .writes("--map", &arguments.map),
+        &context.files(arguments.overwrite).reads(arguments.lens.file()).writes("--map", &arguments.map),
     )
     .map_err(Failure::call)?;
     let optics = arguments.lens.optics()?;

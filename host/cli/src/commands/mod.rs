@@ -35,6 +35,7 @@ use crate::failure::Failure;
 use crate::progress::{self, ChildOutput};
 use crate::settings::Settings;
 use halfrow::board::BoardError;
+use halfrow::call::Files;
 use halfrow::progress::Progress;
 use halfrow::reference;
 
@@ -56,6 +57,11 @@ impl Context {
     /// Where a run tells its progress: stderr, unless nobody is to see it or a program reads the result.
     pub(crate) fn progress(&self) -> Box<dyn Progress> {
         progress::for_stderr(self.hides_progress())
+    }
+
+    /// The list of what a call reads and writes, with the settings file.
+    pub(crate) fn files(&self, overwrite: bool) -> Files {
+        Files::new(overwrite).reads(&self.settings_file)
     }
 
     /// Where the output of a program that this one starts is shown, by the same rule.

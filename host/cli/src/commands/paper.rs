@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let items = arguments.items();
     let through_board = arguments.board.is_named(&context.settings);
     let uses_board = items.iter().any(|item| item.uses_board(through_board));
-    let files = arguments.board.files_if(uses_board, arguments.overwrite, &context.settings)?;
+    let files = arguments.board.files_if(uses_board, arguments.overwrite, context)?;
     arguments.check(&items, uses_board, files, context).map_err(Failure::call)?;
     let photographs = arguments.photographs(&items);
     let photographs = photographs.map_err(|error| Failure::call(error).in_value_of("--images"))?;
@@ -157,7 +157,6 @@ impl Arguments {
             }
         }
         let files = files
-            .reads(&context.settings_file)
             .reads([&self.synthesis])
             .reads(&self.photograph)
             .reads(&self.lines)

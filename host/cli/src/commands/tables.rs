@@ -13,7 +13,6 @@ use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
 use crate::files::prepare_files;
-use halfrow::call::Files;
 use halfrow::optics::outside_circle;
 use halfrow::tables::{TableFile, TableFormat};
 use halfrow::words::count;
@@ -41,8 +40,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let of_settings = context.settings.kernel.as_deref().map(OsStr::new);
     let kernel = arguments.kernel.as_deref().or(of_settings);
     prepare_files(
-        &Files::new(arguments.overwrite)
-            .reads(&context.settings_file)
+        &context
+            .files(arguments.overwrite)
             .reads(arguments.lens.file())
             .reads_kernel(kernel)
             .writes("--output", format.places(&arguments.output)),
