@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use halfrow::board::Stop;
-use halfrow::board::deadlines::RetryLimit;
+use halfrow::board::{RetryLimit, Stop};
 use halfrow::call::{self, Input, Voided};
 use halfrow::frames::{Builtin, FrameFile, PictureSize, ReadError, ReadOptions};
 use halfrow::link::Recording;

@@ -6,8 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Duration;
 
-use halfrow::board::deadlines::RetryLimit;
-use halfrow::board::{Board, BoardError, Datapath, OpenOptions, RowTiming};
+use halfrow::board::{Board, BoardError, Datapath, OpenOptions, RetryLimit, RowTiming};
 use halfrow::link::Link;
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;

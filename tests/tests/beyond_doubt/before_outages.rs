@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use halfrow::board::deadlines::RetryLimit;
+use halfrow::board::RetryLimit;
 use halfrow::link::{Candidate, Link, Reopener};
 use halfrow::progress::Silent;
 use halfrow::result::{Finding, Report};

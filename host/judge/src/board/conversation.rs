@@ -13,11 +13,11 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
 use super::conduct::Conduct;
 use super::counted::Counted;
-use super::deadlines::{RetryLimit, Step};
+use super::deadlines::Step;
 use super::lateness::Lateness;
 use super::sent_requests::{LastRequests, Outgoing, Stray};
 use super::tally::Tally;
-use super::{BoardError, OpenOptions, Received, Stop};
+use super::{BoardError, OpenOptions, Received, RetryLimit, Stop};
 use crate::link::{ClosedLink, Link, LinkError};
 use unclosed::Unclosed;
 

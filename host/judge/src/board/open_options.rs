@@ -1,7 +1,6 @@
 //! How a session is opened.
 
-use super::deadlines::RetryLimit;
-use super::{SessionIds, Stop};
+use super::{RetryLimit, SessionIds, Stop};
 
 /// How a session is opened. The default draws a nonce, a host number and a sequence number, so that sessions differ.
 #[derive(Clone, Debug)]

@@ -4,8 +4,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::board::Tally;
-use crate::board::deadlines::RetryLimit;
+use crate::board::{RetryLimit, Tally};
 
 /// Everything that a link test measured.
 #[derive(Clone, Debug, Serialize)]

@@ -3,8 +3,7 @@
 use std::time::Duration;
 
 use super::Provenance;
-use crate::board::Stop;
-use crate::board::deadlines::RetryLimit;
+use crate::board::{RetryLimit, Stop};
 
 /// How a run is made. By default it has no time limit and the usual retry limit, it ends when the board goes away, it does not
 /// take the board from another host, it judges any kind of board, and it asks the board how many packets reached it.

@@ -10,8 +10,7 @@ use halfrow_model::{Equidistant, Frame, FrameError, Geometry, LensError, Phase, 
 use serde::{Deserialize, Serialize};
 
 use super::{AtSpeed, FrameSource, JUDGED, Plan, Provenance, RunOptions, Selection, SessionIds, Vary};
-use crate::board::Sent;
-use crate::board::deadlines::RetryLimit;
+use crate::board::{RetryLimit, Sent};
 use crate::frames::{Builtin, UnknownBuiltin};
 use crate::link::{Candidate, LinkError, Lost, Recorder, Recording, RecordingError, RecordingFile};
 use crate::tables::{ContentError, TableFile};

@@ -7,8 +7,7 @@ pub(super) mod window;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use crate::board::deadlines::RetryLimit;
-use crate::board::{Board, BoardError, OpenFailed, OpenOptions, Tally, WhenHeld};
+use crate::board::{Board, BoardError, OpenFailed, OpenOptions, RetryLimit, Tally, WhenHeld};
 use crate::link::{Link, OpenError, Reopener};
 use crate::result::{CheckName, Finding, LinkReport, Problem, Reconnection};
 use crate::run::RunOptions;
