@@ -55,7 +55,7 @@ impl Stopwatch {
     ) {
         let (made, waited, seen) = (watched.frames, watched.held_back + watched.paused, &mut watched.clock);
         if made > 1 {
-            let least = hertz(plan.clocks_of(made - 1), at.saturating_sub(self.asked));
+            let least = rate(plan.clocks_of(made - 1), at.saturating_sub(self.asked));
             seen.least_hz = seen.least_hz.max(Some(least));
         }
         if std::mem::replace(&mut self.waited, waited) != waited {
@@ -68,7 +68,7 @@ impl Stopwatch {
             || fetched.records.len() > (made - from) as usize;
         if fetched.state == BurstState::UnderWay && !may_wait && under_way >= TELLING {
             let clocks = plan.clocks_of(made - self.since.1 + 1) + u64::from(plan.latency);
-            let most = hertz(clocks, under_way);
+            let most = rate(clocks, under_way);
             seen.most_hz = Some(seen.most_hz.map_or(most, |least| least.min(most)));
         }
         self.freed = from;
@@ -76,7 +76,7 @@ impl Stopwatch {
 }
 
 /// `clocks` in `time`, in hertz.
-fn hertz(clocks: u64, time: Duration) -> u32 {
+fn rate(clocks: u64, time: Duration) -> u32 {
     (clocks as f64 / time.max(Duration::from_micros(1)).as_secs_f64()) as u32
 }
 

@@ -31,7 +31,7 @@ use crate::verdict::Cause;
 const TELLING: usize = 4;
 
 /// What making a frame again showed.
-struct Again {
+struct MadeAgain {
     repetition: Repetition,
     suspects: Vec<Suspect>,
 }
@@ -71,7 +71,7 @@ impl MadeRows {
     }
 }
 
-impl From<Repetition> for Again {
+impl From<Repetition> for MadeAgain {
     fn from(repetition: Repetition) -> Self {
         Self { repetition, suspects: Vec::new() }
     }
@@ -92,7 +92,7 @@ impl Run<'_> {
         } else if let Some(suspect) =
             tables_late(plan, tables, watched).or_else(|| records_late(plan, tables, watched))
         {
-            Ok(Again { repetition: Repetition::NotNeeded {}, suspects: vec![suspect] })
+            Ok(MadeAgain { repetition: Repetition::NotNeeded {}, suspects: vec![suspect] })
         } else {
             // The signatures came under the board's own CRC, so the verdict stands, whatever making the frame again shows.
             self.make_again(plan, tables, first)
@@ -101,7 +101,7 @@ impl Run<'_> {
             tracing::warn!("the frame was not made again: {}", end.finding().sentence());
             Repetition::Impossible {}.into()
         });
-        let Again { repetition, mut suspects } = again;
+        let MadeAgain { repetition, mut suspects } = again;
         if suspects.is_empty() {
             suspects.extend(at_speed(repetition.streamed(), None));
         }
@@ -110,7 +110,7 @@ impl Run<'_> {
         End::suspecting(CheckName::AtSpeed, finding, suspects)
     }
 
-    fn make_again(&mut self, plan: &BurstPlan, tables: &[Generation], n: u32) -> Result<Again, End> {
+    fn make_again(&mut self, plan: &BurstPlan, tables: &[Generation], n: u32) -> Result<MadeAgain, End> {
         let bank = usize::from(plan.is_of_shadow(n));
         let Some(generation) = tables.get(bank).filter(|_| plan.has_trap()) else {
             return Ok(Repetition::NoTrap {}.into());
@@ -143,7 +143,7 @@ impl Run<'_> {
         tables: &[Generation],
         watched: &BurstSeen,
         only_there: bool,
-    ) -> Result<Again, End> {
+    ) -> Result<MadeAgain, End> {
         let (Some(first), Some(generation)) = (watched.wrong_frames.first(), tables.first()) else {
             return Ok(Repetition::AllRight { frames: watched.frames }.into());
         };
@@ -172,7 +172,10 @@ impl Run<'_> {
             Some(seen) => self.diagnose_rows(&seen, "at speed", content.frame),
             None => self.suspects_of(&seen, content, streamed),
         };
-        Ok(Again { repetition: Repetition::Trapped { frames, row, only_there, streamed, kept }, suspects })
+        Ok(MadeAgain {
+            repetition: Repetition::Trapped { frames, row, only_there, streamed, kept },
+            suspects,
+        })
     }
 
     /// Makes the tables of the other bank active, which takes a frame.
@@ -277,9 +280,9 @@ impl Run<'_> {
 }
 
 /// A frame that was wrong at try `frames`, of which the trap kept `row` with right samples and another signature.
-fn signed_wrong(frames: u32, row: usize, only_there: bool) -> Again {
+fn signed_wrong(frames: u32, row: usize, only_there: bool) -> MadeAgain {
     let suspect = Suspect::explaining_nothing(Defect::SignatureWrong { row });
-    Again { repetition: Repetition::SignedWrong { frames, row, only_there }, suspects: vec![suspect] }
+    MadeAgain { repetition: Repetition::SignedWrong { frames, row, only_there }, suspects: vec![suspect] }
 }
 
 /// What differs in the last row of `seen`, which is the one that the trap kept.

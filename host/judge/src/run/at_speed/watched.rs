@@ -41,7 +41,7 @@ pub(super) struct WrongFrame {
 
 /// Something that the board counts wrong.
 #[derive(Clone, Debug)]
-pub(super) struct Miscount {
+pub(super) struct MiscountSeen {
     /// What it is.
     pub(super) finding: Finding,
     /// When the record that shows it came, on the link's clock.
@@ -60,7 +60,7 @@ pub(super) struct BurstSeen {
     /// Frames whose signature is right and of which something is counted wrong.
     pub(super) miscounted: u32,
     /// The first wrong count.
-    pub(super) miscount: Option<Miscount>,
+    pub(super) miscount: Option<MiscountSeen>,
     /// Frames in which the enable was off at times.
     pub(super) paused: u32,
     /// Frames that waited for a free record.
@@ -97,7 +97,7 @@ impl BurstSeen {
         if let Some((count, counted, right)) = wrong {
             self.miscounted += 1;
             let finding = Finding::MiscountedAtSpeed { frame: n, count, counted, right };
-            self.miscount.get_or_insert(Miscount { finding, at: watch.board.now() });
+            self.miscount.get_or_insert(MiscountSeen { finding, at: watch.board.now() });
         }
     }
 
@@ -106,7 +106,7 @@ impl BurstSeen {
         let (frame, count) = (plan.frames, BurstCount::Records);
         if records > frame {
             let finding = Finding::MiscountedAtSpeed { frame, count, counted: records, right: frame };
-            self.miscount.get_or_insert(Miscount { finding, at });
+            self.miscount.get_or_insert(MiscountSeen { finding, at });
         }
     }
 }

@@ -86,7 +86,7 @@ impl Run<'_> {
     }
 
     /// What fits into the time `limit` on the run's clock, of which the link has `lost` some seconds, which do not count.
-    fn chosen(&mut self, limit: Duration, lost: f64) -> Result<Chosen, End> {
+    fn chosen(&mut self, limit: Duration, lost: f64) -> Result<Fitted, End> {
         let rates = Rates::of(self.board).during(CheckName::Link)?;
         let capabilities = self.board.capabilities.clone();
         let prices = Prices::new(self.plan, &capabilities, rates);
@@ -106,7 +106,7 @@ impl Run<'_> {
 }
 
 /// What is taken of a plan, unless too little fits.
-type Chosen = Result<(Selection, WithinReport), WithinError>;
+type Fitted = Result<(Selection, WithinReport), WithinError>;
 
 /// The time that the run may take.
 #[derive(Clone, Copy)]
@@ -120,7 +120,7 @@ struct Time {
 }
 
 /// What fits into `time` over a link with these `prices`.
-fn fitting(prices: &Prices<'_>, build: &str, time: Time) -> Chosen {
+fn fitting(prices: &Prices<'_>, build: &str, time: Time) -> Fitted {
     let faults = Faults::all()?;
     let Time { seconds, spent, kept } = time;
     let left = seconds * (1.0 - kept) - spent;

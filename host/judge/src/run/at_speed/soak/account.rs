@@ -21,7 +21,7 @@ pub(super) const LONGEST_BURST: Duration = Duration::from_secs(60);
 const MOST_FRAMES: u32 = 1 << 16;
 
 /// A soak that is under way.
-pub(super) struct Account {
+pub(super) struct SoakAccount {
     pub(super) report: SoakReport,
     /// When it began, on the run's clock.
     begun: Duration,
@@ -31,7 +31,7 @@ pub(super) struct Account {
     first_doubtful: Option<End>,
 }
 
-impl Account {
+impl SoakAccount {
     /// A soak of length `asked` that begins at `begun` on the run's clock.
     pub(super) fn new(asked: SoakLength, begun: Duration) -> Self {
         let report = SoakReport::new(asked);
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
 
     fn is_over(seconds: f64, now: Duration) -> bool {
-        Account::new(SoakLength::Time { seconds }, Duration::ZERO).is_over(now)
+        SoakAccount::new(SoakLength::Time { seconds }, Duration::ZERO).is_over(now)
     }
 
     /// Such times come from a deadline that has already passed, or from 0 divided by 0.

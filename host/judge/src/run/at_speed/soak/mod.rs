@@ -7,7 +7,7 @@ mod played;
 use std::time::Duration;
 
 use super::burst::{BurstPlan, LONGEST_LOOK};
-use super::watched::{BurstSeen, EndsEarly, Miscount};
+use super::watched::{BurstSeen, EndsEarly, MiscountSeen};
 use super::{NONE, price};
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::{Event, Step};
@@ -19,7 +19,7 @@ use crate::run::sessions::second_look::{LOOKS, unasked};
 use crate::run::steps::Run;
 use crate::tables::datapath_of;
 use crate::verdict::Cause;
-use account::{Account, LONGEST_BURST, counted};
+use account::{LONGEST_BURST, SoakAccount, counted};
 use played::Played;
 
 /// Whether a burst makes the same frame again and again, so that the board keeps a row of a frame that differs. A
@@ -29,7 +29,7 @@ fn is_trapped(draw: u32) -> bool {
 }
 
 /// What differed in a burst or in the tables before it, or an answer that no sound board gives.
-fn difference(account: &Account, played: &Result<Played, End>) -> Option<End> {
+fn difference(account: &SoakAccount, played: &Result<Played, End>) -> Option<End> {
     let ended = match played {
         Ok(played) => match played.finding() {
             Some(finding) => {
@@ -66,7 +66,7 @@ impl Run<'_> {
         length: SoakLength,
         last: Option<&Segment>,
     ) -> Result<Exercised, End> {
-        let mut account = Account::new(length, self.clock());
+        let mut account = SoakAccount::new(length, self.clock());
         let bursts = match self.bursts() {
             Ok(bursts) => bursts,
             Err(reason) => {
@@ -97,7 +97,7 @@ impl Run<'_> {
 
     fn all_bursts(
         &mut self,
-        account: &mut Account,
+        account: &mut SoakAccount,
         bursts: Bursts,
         last: Option<&Segment>,
     ) -> Result<(), End> {
@@ -114,7 +114,7 @@ impl Run<'_> {
     }
 
     /// Judges the next burst.
-    fn one_burst(&mut self, account: &mut Account, bursts: Bursts) -> Result<(), End> {
+    fn one_burst(&mut self, account: &mut SoakAccount, bursts: Bursts) -> Result<(), End> {
         let draw = account.report.bursts;
         account.report.bursts += 1;
         let mut doubtful = None;
@@ -129,7 +129,7 @@ impl Run<'_> {
     /// `doubtful`, and the burst is made again in another session.
     fn settle(
         &mut self,
-        account: &mut Account,
+        account: &mut SoakAccount,
         bursts: Bursts,
         draw: u32,
         doubtful: &mut Option<(Finding, Doubt)>,
@@ -163,7 +163,7 @@ impl Run<'_> {
     }
 
     /// Has the board make the burst with the draw `draw`, and compares every frame.
-    fn play(&mut self, account: &mut Account, bursts: Bursts, draw: u32) -> Result<Played, End> {
+    fn play(&mut self, account: &mut SoakAccount, bursts: Bursts, draw: u32) -> Result<Played, End> {
         if Doubt::of_session(self.board).is_some() {
             self.open_another_session()?;
         }
@@ -208,7 +208,7 @@ impl Run<'_> {
     }
 
     /// Diagnoses what differed in a burst.
-    fn look_into(&mut self, account: &mut Account, played: &Played) {
+    fn look_into(&mut self, account: &mut SoakAccount, played: &Played) {
         let Played { plan, tables, watched, .. } = played;
         let miscount = watched.miscount.as_ref();
         let at = watched.wrong_frames.first().map(|first| first.at).or(miscount.map(|miscount| miscount.at));
@@ -216,7 +216,7 @@ impl Run<'_> {
         account.report.differing_bursts += 1;
         let end = match miscount {
             _ if !account.wants_more() => return,
-            Some(Miscount { finding, .. }) if watched.wrong == 0 => {
+            Some(MiscountSeen { finding, .. }) if watched.wrong == 0 => {
                 End::failed(CheckName::AtSpeed, finding.clone())
             }
             _ => self.wrong_at_speed(plan, tables, watched),
