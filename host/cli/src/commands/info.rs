@@ -22,7 +22,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let options = arguments.board.open_options(&context.settings)?;
     let asked = Board::with(candidate.link, &options, |board| {
         (
-            board.status(false),
+            board.status(),
             BoardReport::of(board.welcome(), board.capabilities(), candidate.kind, candidate.target),
         )
     });

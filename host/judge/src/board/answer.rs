@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{RefusalCode, Reply};
+use halfrow_protocol::message::{RefusalCode, Reply, Status};
 use halfrow_protocol::{Header, Kind, Packet};
 
 use super::BoardError;
@@ -45,6 +45,14 @@ impl Conversation {
         let is_board = self.tally.packets_in > self.tally.packets_out;
         Ok(if beside > 0 && !is_board { BoardError::Console { bytes: beside } } else { BoardError::Echoed })
     }
+}
+
+/// The counters in `answer`, which is that to a STATUS.
+pub(super) fn status_in(answer: &OwnedPacket) -> Result<Status, BoardError> {
+    take_reply(Kind::Status, answer, |reply| match reply {
+        Reply::Status(status) => Some(status),
+        _ => None,
+    })
 }
 
 /// The expected part of a reply, or the error that stands in its place.

@@ -2,10 +2,12 @@
 
 use std::mem;
 
-use halfrow_protocol::message::{Reply, Request, Status};
+use halfrow_protocol::message::{Request, Status};
 
+use super::answer::status_in;
 use super::conversation::Conversation;
 use super::deadlines::Step;
+use super::sent_requests::Outgoing;
 use super::{BoardError, Tally};
 
 /// How often the board is asked at most. A request that had to be repeated is followed by another one, and on a link that holds
@@ -80,9 +82,18 @@ impl Counted {
 }
 
 impl Conversation {
-    /// The board's counters; `clear` clears them. With the requests that were answered since they were cleared before: if this
-    /// one was repeated, more of them follow, which these counters cannot contain.
-    pub(super) fn status(&mut self, clear: bool, step: Step) -> Result<(Status, u64), BoardError> {
+    /// The board's counters, with the requests that were answered since they were cleared: if this one was repeated, more of
+    /// them follow, which these counters cannot contain.
+    pub(super) fn status(&mut self, step: Step) -> Result<(Status, u64), BoardError> {
+        self.counters(false, step)
+    }
+
+    /// Clears the board's counters, and returns what they were.
+    pub(super) fn clear_counters(&mut self) -> Result<Status, BoardError> {
+        self.counters(true, Step::Request).map(|(status, _)| status)
+    }
+
+    fn counters(&mut self, clear: bool, step: Step) -> Result<(Status, u64), BoardError> {
         let (retries, cleared) = (self.tally.retries, self.counted.from.answered);
         let status = self.ask_for_status(clear, step)?;
         let answered = self.tally.answered.saturating_sub(cleared);
@@ -94,10 +105,8 @@ impl Conversation {
 
     fn ask_for_status(&mut self, clear: bool, step: Step) -> Result<Status, BoardError> {
         let (sent, retries) = (self.tally.packets_out, self.tally.retries);
-        let status = self.request(&Request::Status { clear }, step, |reply| match reply {
-            Reply::Status(status) => Some(status),
-            _ => None,
-        })?;
+        let asking = Request::Status { clear };
+        let status = status_in(&self.ask(&Outgoing::Request(&asking), step, |_| true)?)?;
         let retried = self.tally.retries > retries;
         // If the request that clears was repeated, the second copy returns counters that are already cleared.
         if self.counts && !(clear && retried) {

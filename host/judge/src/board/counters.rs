@@ -1,21 +1,29 @@
 //! What a board counts, and what the host counts for comparison.
 
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::{Reply, ResetLevel, Status};
+use halfrow_protocol::message::{ResetLevel, Status};
 
-use super::answer::take_reply;
+use super::answer::status_in;
 use super::counted::Miscount;
 use super::deadlines::Step;
 use super::sent_requests::Outgoing;
 use super::{Board, BoardError};
 
 impl Board {
-    /// The board's counters; `clear` clears them.
+    /// The board's counters.
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
-    pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
-        self.conversation.status(clear, Step::Request).map(|(status, _)| status)
+    pub fn status(&mut self) -> Result<Status, BoardError> {
+        self.status_and_answered().map(|(status, _)| status)
+    }
+
+    /// Clears the board's counters, and returns what they were.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub(crate) fn clear_counters(&mut self) -> Result<Status, BoardError> {
+        self.conversation.clear_counters()
     }
 
     /// The board's counters, and the requests that were answered until they came, this one included, since they were cleared.
@@ -23,7 +31,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub(crate) fn status_and_answered(&mut self) -> Result<(Status, u64), BoardError> {
-        self.conversation.status(false, Step::Request)
+        self.conversation.status(Step::Request)
     }
 
     /// Has the board clear its counters by `clear`, any number but 0, and returns what they were; none if it refuses.
@@ -32,15 +40,11 @@ impl Board {
     /// [`BoardError`] when no answer comes.
     pub(crate) fn clear_by(&mut self, clear: u8) -> Result<Option<Status>, BoardError> {
         // Counts what came before it is forgotten.
-        self.status(false)?;
+        self.status()?;
         let request = Outgoing::Bytes(Kind::Status, &[clear]);
         let answer = self.conversation.ask(&request, Step::Request, |_| true)?;
         self.conversation.counted.set_back(self.conversation.tally);
-        let told = take_reply(Kind::Status, &answer, |reply| match reply {
-            Reply::Status(status) => Some(status),
-            _ => None,
-        });
-        match told {
+        match status_in(&answer) {
             Err(BoardError::Refused { .. }) => Ok(None),
             told => told.map(Some),
         }
@@ -51,9 +55,9 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub(crate) fn status_although_stopped(&mut self) -> Result<Status, BoardError> {
-        match self.status(false) {
+        match self.status() {
             Err(BoardError::Stopped(_) | BoardError::Timeout { .. }) => {
-                let told = self.conversation.disregarding_stop(|told| told.status(false, Step::Close));
+                let told = self.conversation.disregarding_stop(|told| told.status(Step::Close));
                 told.map(|(status, _)| status)
             }
             status => status,
@@ -90,7 +94,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub(crate) fn start_afresh(&mut self) -> Result<bool, BoardError> {
-        let had_tables = self.status(true)?.generation != 0;
+        let had_tables = self.clear_counters()?.generation != 0;
         if had_tables {
             self.reset(ResetLevel::Tables, Step::Request)?;
         }

@@ -7,7 +7,7 @@ use halfrow_protocol::message::{
 };
 use halfrow_protocol::{Kind, Packet, samples};
 
-use super::answer::{OwnedPacket, take_reply};
+use super::answer::{OwnedPacket, status_in, take_reply};
 use super::deadlines::Step;
 use super::sent_requests::Outgoing;
 use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, rows};
@@ -163,7 +163,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when the board does not clear its counters.
     pub(crate) fn excuse_repeats(&mut self) -> Result<(), BoardError> {
-        self.status(true)?;
+        self.clear_counters()?;
         (self.conversation.session.repeated_changes, self.conversation.session.doubled_changes) = (0, 0);
         self.conversation.counted.wrong = None;
         Ok(())
@@ -224,11 +224,7 @@ impl Board {
     pub(crate) fn status_and_window(&mut self) -> Result<(Status, u32), BoardError> {
         let request = Request::Status { clear: false };
         let answer = self.conversation.ask(&Outgoing::Request(&request), Step::Request, |_| true)?;
-        let status = take_reply(Kind::Status, &answer, |reply| match reply {
-            Reply::Status(status) => Some(status),
-            _ => None,
-        })?;
-        Ok((status, answer.header.window))
+        Ok((status_in(&answer)?, answer.header.window))
     }
 
     /// Drops the rows inside the board, which then waits for a number that no row of the session has had. So whatever is still

@@ -113,7 +113,7 @@ impl Test<'_> {
 
     /// Packets that reached the board damaged in this session.
     fn damaged_out(&mut self) -> Result<u64, BoardError> {
-        Ok(self.board.status(false)?.damaged().into())
+        Ok(self.board.status()?.damaged().into())
     }
 
     fn round_trips(&mut self) -> Result<RoundTrips, BoardError> {

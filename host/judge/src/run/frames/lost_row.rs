@@ -82,7 +82,7 @@ impl Run<'_> {
         if let Some(tables) = self.generation(frame.generation) {
             self.commit_uploaded(&tables, frame.number, geometry.height())?;
         }
-        self.board.status(true)?;
+        self.board.clear_counters()?;
         let first_row = self.board.acknowledged();
         let Ok(input) = self.plan.render(frame, geometry) else { return Ok(Replay::Troubled) };
         let frame = NumberedFrame { number: frame.number, frame: input };
@@ -92,10 +92,10 @@ impl Run<'_> {
         let mut echoed = self.echoes_pass()?;
         for _ in 0..ASKED {
             self.board.give(&row.place, &row.samples);
-            self.board.status(false)?;
+            self.board.status()?;
         }
         echoed &= self.echoes_pass()?;
-        let status = self.board.status(false)?;
+        let status = self.board.status()?;
         let is_clean = [status.damaged(), status.foreign_packets] == [0; 2];
         if !echoed || !is_clean || !is_calm(before, self.board.tally()) {
             return Ok(Replay::Troubled);

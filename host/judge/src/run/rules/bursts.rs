@@ -332,7 +332,7 @@ impl Rules<'_, '_> {
         self.drop_rows()?;
         self.clear()?;
         self.right_burst(Rule::Repeated, BurstMode::Repeating)?;
-        let status = self.run.board.status(false).map_err(of_board)?;
+        let status = self.run.board.status().map_err(of_board)?;
         self.not_counted(None, &status)
     }
 }

@@ -32,9 +32,9 @@ impl Rules<'_, '_> {
         let Some((compared, over)) = Compared::of_twelve_bits(&self.small, FRAME, &made, depth) else {
             return Ok(());
         };
-        let before = self.run.board.status(false).map_err(of_board)?;
+        let before = self.run.board.status().map_err(of_board)?;
         self.frames(Rule::Samples, compared)?;
-        let status = self.run.board.status(false).map_err(of_board)?;
+        let status = self.run.board.status().map_err(of_board)?;
         let counted = status.samples_over.wrapping_sub(before.samples_over);
         // A late copy of an old request may have cleared the counter.
         if counted == over || !self.run.board.had_each_packet_once(&status) {

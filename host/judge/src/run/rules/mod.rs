@@ -113,7 +113,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     /// Tries all rules, and returns how many requests were answered as they must be.
     fn all(mut self) -> Result<usize, End> {
         self.drop_rows()?;
-        self.before = self.run.board.status(false).map_err(of_board)?;
+        self.before = self.run.board.status().map_err(of_board)?;
         self.requests()?;
         self.tables()?;
         self.damage()?;
@@ -164,7 +164,7 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     /// Whether the board answers and had every packet that was sent to it: only then is it known what it did not answer.
     fn had_it_each_time(&mut self) -> bool {
-        self.run.board.status(false).is_ok_and(|status| self.run.board.had_each_packet_once(&status))
+        self.run.board.status().is_ok_and(|status| self.run.board.had_each_packet_once(&status))
     }
 
     /// Sends a request that must be refused.
@@ -220,9 +220,9 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     /// Whether the board has the row in `payload`, by what it counts when that comes once more.
     fn is_known_when_sent_again(&mut self, payload: &[u8]) -> bool {
-        let Ok(before) = self.run.board.status(false) else { return false };
+        let Ok(before) = self.run.board.status() else { return false };
         self.run.board.give_bytes(Kind::RowIn, payload);
-        let Ok(after) = self.run.board.status(false) else { return false };
+        let Ok(after) = self.run.board.status() else { return false };
         let known = |status: &Status| u64::from(status.rows_unneeded) + u64::from(status.rows_repeated);
         let is_refused = after.refusals > before.refusals;
         known(&after) > known(&before) && !is_refused && self.run.board.had_each_packet_once(&after)

@@ -32,7 +32,7 @@ impl Rules<'_, '_> {
     /// The board must count at least the refusals that came in this session: whatever a link loses or doubles, each was
     /// sent for a request.
     pub(super) fn refusals_counted(&mut self) -> Result<(), End> {
-        let after = self.run.board.status(false).map_err(of_board)?;
+        let after = self.run.board.status().map_err(of_board)?;
         let (Refusals { own, foreign }, before) = (self.refusals, self.before);
         at_least(
             None,

@@ -69,7 +69,7 @@ impl Rules<'_, '_> {
     /// Whether the board answers that it has neither session nor tables any more. One that does not answer may have both: its
     /// link may be broken, which must not hide what was found before.
     fn has_lost_power(&mut self) -> bool {
-        match self.run.board.status(false) {
+        match self.run.board.status() {
             Ok(status) => status.generation == 0,
             Err(error) => matches!(error, BoardError::SessionLost),
         }
@@ -96,7 +96,7 @@ impl Rules<'_, '_> {
     /// Another host must be told that the board is held, and for how long at most.
     fn held(&mut self) -> Result<(), End> {
         let begun = self.run.board.now();
-        self.run.board.status(false).map_err(of_board)?;
+        self.run.board.status().map_err(of_board)?;
         let said = self.run.board.greet_as_another_host();
         if matches!(said, Ok(Response::Replied(_))) {
             let took = self.run.board.now().saturating_sub(begun);
@@ -118,7 +118,7 @@ impl Rules<'_, '_> {
 
     /// Another host that takes the board over must get it, whoever holds it.
     fn taken_over(&mut self) -> Result<(), End> {
-        self.run.board.status(false).map_err(of_board)?;
+        self.run.board.status().map_err(of_board)?;
         self.ends_right()?;
         let said = self.run.board.take_over_as_another_host().map(|said| match said {
             Response::Replied(_) => Response::Replied(Vec::new()),
@@ -168,7 +168,7 @@ impl Rules<'_, '_> {
             let again = rules.run.board.greet_again().map_err(of_board)?.session;
             if again != own {
                 // The window is not known until the board has answered in the new session.
-                rules.run.board.status(false).map_err(of_board)?;
+                rules.run.board.status().map_err(of_board)?;
                 return Err(another_session(own, again));
             }
             rules.right += 1;
@@ -206,7 +206,7 @@ impl Rules<'_, '_> {
         if self.height > 2 {
             self.enter()?;
         }
-        let before = self.run.board.status(false).map_err(of_board)?;
+        let before = self.run.board.status().map_err(of_board)?;
         self.given = Given::default();
         self.next_session()?;
         self.begun_anew(Rule::NewSession, &before)?;
@@ -217,7 +217,7 @@ impl Rules<'_, '_> {
             self.sums(Rule::NewSession, 1)?;
         }
         self.right_frames(&[frame, FRAME])?;
-        let status = self.run.board.status(false).map_err(of_board)?;
+        let status = self.run.board.status().map_err(of_board)?;
         rows_numbered(&status, self.run.board.packets_numbered())
     }
 
@@ -230,7 +230,7 @@ impl Rules<'_, '_> {
         let frame = self.expect_others_from(SECOND_ROW)?;
         let burst = self.start(Burst { mode, ..burst })?;
         self.look(&burst, 0, FEW, Awaited::under_way(FEW))?;
-        let before = self.run.board.status(false).map_err(of_board)?;
+        let before = self.run.board.status().map_err(of_board)?;
         self.next_session()?;
         self.begun_anew(Rule::NewSession, &before)?;
         self.right_frames(&[FRAME])?;
@@ -246,7 +246,7 @@ impl Rules<'_, '_> {
         for _ in 0..TIMES {
             self.drop_rows()?;
             self.rows_again()?;
-            let before = self.run.board.status(false).map_err(of_board)?;
+            let before = self.run.board.status().map_err(of_board)?;
             let own = self.run.board.session();
             self.close(own)?;
             match self.greet() {
@@ -275,7 +275,7 @@ impl Rules<'_, '_> {
     pub(super) fn forget(&mut self) -> Result<(), End> {
         for _ in 0..TIMES {
             self.run.board.forget().map_err(of_board)?;
-            match self.run.board.status(false) {
+            match self.run.board.status() {
                 Err(BoardError::SessionLost) => self.next_session()?,
                 status => return status.map(drop).map_err(of_board),
             }
@@ -312,7 +312,7 @@ impl Rules<'_, '_> {
     /// After HELLO no row, burst, commit or count may be left of the session before. Tables and configuration must be as they
     /// were at the status `before`.
     fn begun_anew(&mut self, rule: Rule, before: &Status) -> Result<(), End> {
-        let status = self.run.board.status(false).map_err(of_board)?;
+        let status = self.run.board.status().map_err(of_board)?;
         self.not_counted(Some(rule), &status)?;
         equal(
             Some(rule),

@@ -53,7 +53,7 @@ impl Rules<'_, '_> {
         if board.rows_came() < ROWS || board.rows_doubled() > 0 || 2 * twice < answered {
             return Ok(());
         }
-        let status = board.status(false).map_err(of_board)?;
+        let status = board.status().map_err(of_board)?;
         if !board.had_each_packet_once(&status) {
             return Ok(());
         }
@@ -73,9 +73,9 @@ impl Rules<'_, '_> {
     /// Damaged packets must be counted by their kind. What stands between host and board may drop some of a kind, such as
     /// those that do not unstuff, or all of both.
     fn damage_counted(&mut self) -> Result<(), End> {
-        let before = self.run.board.status(false).map_err(of_board)?;
+        let before = self.run.board.status().map_err(of_board)?;
         let (_, [crc, framing]) = self.after_damage()?;
-        let after = self.run.board.status(false).map_err(of_board)?;
+        let after = self.run.board.status().map_err(of_board)?;
         if !self.run.board.had_each_packet_once(&after) {
             return Ok(());
         }

@@ -158,7 +158,7 @@ impl Counts {
 /// Whether the board never counts more packets than when it was last asked, although asking is a packet itself. No link
 /// delivers a late copy of a request that clears the counters every time.
 fn loses_count(board: &mut Board) -> bool {
-    let counts: Vec<_> = (0..COUNTS).map_while(|_| board.status(false).ok()).collect();
+    let counts: Vec<_> = (0..COUNTS).map_while(|_| board.status().ok()).collect();
     counts.len() == COUNTS && counts.windows(2).all(|two| two[1].packets <= two[0].packets)
 }
 
