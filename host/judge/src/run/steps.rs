@@ -17,7 +17,7 @@ use crate::board::{Board, BoardError, UnknownDatapath, possible};
 use crate::link::Link;
 use crate::progress::{Progress, Step};
 use crate::reference;
-use crate::result::{CheckName, Finding, NotExercised, Problem};
+use crate::result::{CheckName, Finding, NotExercised};
 use crate::tables::{DATAPATH, datapath_of};
 use crate::target::BoardKind;
 use crate::verdict::Cause;
@@ -93,7 +93,7 @@ fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
             findings.checks.passed(CheckName::Judge, Finding::GoldenSamplesFound { samples, path });
             Ok(())
         }
-        Err(what) => Err(End::error(CheckName::Judge, Cause::Station, Problem::of(&CannotJudge(what)))),
+        Err(what) => Err(End::station(CheckName::Judge, &CannotJudge(what))),
     }
 }
 
@@ -103,7 +103,7 @@ fn all_judged(schedule: &[Segment], judged: usize) -> Result<(), End> {
     if judged == planned {
         return Ok(());
     }
-    Err(End::error(CheckName::Frames, Cause::Station, Problem::of(&NotAllJudged { planned, judged })))
+    Err(End::station(CheckName::Frames, &NotAllJudged { planned, judged }))
 }
 
 impl Run<'_> {
@@ -137,7 +137,7 @@ impl Run<'_> {
         let (plan, generations) = (self.plan, self.generations.clone());
         let ended = thread::scope(|scope| {
             let frames = prepared::ahead(scope, plan, &schedule, generations);
-            let frames = frames.map_err(|error| error.during(CheckName::Frames))?;
+            let frames = frames.during(CheckName::Frames)?;
             self.progress.step(Step::TestTheLink);
             self.over_outages(Self::link)?;
             let last = self.stream_and_judge(&schedule, &frames, seen)?;

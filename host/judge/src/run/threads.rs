@@ -3,10 +3,6 @@
 use std::io;
 use std::thread::{Builder, Scope};
 
-use super::findings::End;
-use crate::result::{CheckName, Problem};
-use crate::verdict::Cause;
-
 /// The system gives this program no thread in which to compute what must come back.
 #[derive(Debug, thiserror::Error)]
 #[error(
@@ -14,13 +10,6 @@ use crate::verdict::Cause;
      processes, then run again"
 )]
 pub(crate) struct NoThread(#[source] io::Error);
-
-impl NoThread {
-    /// The end of a run that needs a thread for `check`.
-    pub(super) fn during(&self, check: CheckName) -> End {
-        End::error(check, Cause::Station, Problem::of(self))
-    }
-}
 
 /// Does `work` on a thread of `scope`.
 pub(super) fn spawn<'scope>(

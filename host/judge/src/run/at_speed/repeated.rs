@@ -18,14 +18,13 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
-    CheckName, Defect, Evidence, Finding, FrameReport, KeptRow, Lead, MissingRows, Problem, Repetition,
-    Streamed, Suspect,
+    CheckName, Defect, Evidence, Finding, FrameReport, KeptRow, Lead, MissingRows, Repetition, Streamed,
+    Suspect,
 };
 use crate::run::findings::{During, End};
 use crate::run::frames::kept::as_found;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
-use crate::verdict::Cause;
 
 /// The least differing samples with which a row can tell one defect from another.
 const TELLING: usize = 4;
@@ -182,9 +181,8 @@ impl Run<'_> {
     pub(super) fn activate(&mut self, generation: &Generation) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
         let scene = Scene { geometry: *tables.geometry(), ..self.plan.scene(u16::MAX.into()) };
-        let frame = Builtin::Noise
-            .render(&scene)
-            .map_err(|error| End::error(CheckName::AtSpeed, Cause::Station, Problem::of(&error)))?;
+        let frame =
+            Builtin::Noise.render(&scene).map_err(|error| End::station(CheckName::AtSpeed, &error))?;
         self.board.commit(tables, kernel, u16::MAX, *number).during(CheckName::AtSpeed)?;
         let frame = NumberedFrame { number: u16::MAX, frame: frame.into() };
         let streamed = self.board.stream(&mut Unjudged(iter::once(frame))).during(CheckName::AtSpeed);

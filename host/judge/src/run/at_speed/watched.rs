@@ -202,10 +202,9 @@ impl Run<'_> {
         let burst = plan.request(self.bursts);
         let mut watched = BurstSeen::default();
         let ended = thread::scope(|scope| {
-            let predicted = predicted::ahead(scope, *plan, tables);
-            let predicted = predicted.map_err(|error| error.during(CheckName::AtSpeed))?;
+            let predicted = predicted::ahead(scope, *plan, tables).during(CheckName::AtSpeed)?;
             let asked = self.board.heard_at();
-            self.board.burst(&burst).map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+            self.board.burst(&burst).during(CheckName::AtSpeed)?;
             let stopwatch = Stopwatch::new(asked, self.board.heard_at());
             let watch = Watch {
                 board: self.board,

@@ -1,7 +1,10 @@
 //! Why a run ended.
 
+use std::error::Error;
+
 use crate::board::{BoardError, Shown};
 use crate::result::{CheckName, Finding, Outcome, Problem, Suspect};
+use crate::run::NoThread;
 use crate::verdict::Cause;
 
 /// Why a run ended before its last step, or with a wrong board.
@@ -18,6 +21,11 @@ impl End {
     pub(crate) fn board(check: CheckName, error: &BoardError) -> Self {
         let (cause, finding) = (error.cause(), Problem::of(error).into());
         Self::Error { check, cause, finding, shown: error.shown() }
+    }
+
+    /// The run could not go on because of something at the station.
+    pub(crate) fn station(check: CheckName, error: &(dyn Error + 'static)) -> Self {
+        Self::error(check, Cause::Station, Problem::of(error))
     }
 
     pub(crate) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
@@ -109,14 +117,20 @@ impl End {
     }
 }
 
-/// The result of asking a board something in a check.
+/// The result of something that a check needs.
 pub(crate) trait During<T> {
-    /// Ends the run in `check` if the board could not be driven.
+    /// Ends the run in `check` if it failed.
     fn during(self, check: CheckName) -> Result<T, End>;
 }
 
 impl<T> During<T> for Result<T, BoardError> {
     fn during(self, check: CheckName) -> Result<T, End> {
         self.map_err(|error| End::board(check, &error))
+    }
+}
+
+impl<T> During<T> for Result<T, NoThread> {
+    fn during(self, check: CheckName) -> Result<T, End> {
+        self.map_err(|error| End::station(check, &error))
     }
 }

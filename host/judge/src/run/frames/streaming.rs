@@ -10,12 +10,11 @@ use super::pauses::pauses;
 use super::prepared::{PrepareError, Prepared};
 use super::row_judge::{JudgeOptions, RowJudge};
 use crate::board::{BoardError, MAX_LATENCY, Misconduct, row_blanking};
-use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, Problem, RepeatedRow};
+use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, RepeatedRow};
 use crate::run::findings::{During, End};
 use crate::run::plan::{SENSOR_BLANKING, Segment, Timing};
 use crate::run::steps::Run;
 use crate::tables::datapath_of;
-use crate::verdict::Cause;
 
 impl Run<'_> {
     /// Streams a segment, whose frames are the next ones of `source`, and judges what comes back.
@@ -30,7 +29,7 @@ impl Run<'_> {
         let streamed = self.stream_to_the_end(segment, &mut judge);
         let prepared = judge.finish();
         streamed?;
-        prepared.map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
+        prepared.map_err(|error| End::station(CheckName::Frames, &error))?;
         if self.plan.fail_fast && seen.differences() > 0 {
             self.board.drop_rows().during(CheckName::Frames)?;
         }

@@ -9,12 +9,12 @@ use halfrow_protocol::message::{
     Burst, BurstMode, BurstState, Entries, Expect, FrameRecord, Records, RefusalCode, Request, RowPlace, Span,
 };
 
-use super::{FIRST_FACTOR, Rules, longer, of_board};
+use super::{FIRST_FACTOR, Rules, longer};
 use crate::board::{BoardError, Fetched, frame_clocks};
-use crate::result::{Answer, Rule};
+use crate::result::{Answer, CheckName, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{clock_hz, content, known_bursts, signer};
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 
 /// Frames of a burst that must be right: every board has records for two.
 const FEW: u32 = 2;
@@ -229,7 +229,7 @@ impl Rules<'_, '_> {
         let patience = time + PATIENCE + self.longest_unseen(frames);
         let (mut idle, mut stood, mut most) = (time.min(LONGEST_IDLE), Duration::ZERO, 0);
         loop {
-            let fetched = self.run.board.records(burst.burst, from).map_err(of_board)?;
+            let fetched = self.run.board.records(burst.burst, from).during(CheckName::Rules)?;
             let has_ended = fetched.state == BurstState::Ended;
             let came = Awaited { ended: has_ended, records: fetched.records.len() };
             if awaited.is_met_by(came) {
@@ -241,7 +241,7 @@ impl Rules<'_, '_> {
             if stood >= patience {
                 return Err(super::broken(Rule::Ended, Kind::Records, awaited.into(), came.into()));
             }
-            self.run.board.idle(idle).map_err(of_board)?;
+            self.run.board.idle(idle).during(CheckName::Rules)?;
             (stood, idle) = (stood + idle, (2 * idle).min(LONGEST_IDLE));
         }
     }
@@ -291,7 +291,7 @@ impl Rules<'_, '_> {
         for bytes in BYTES_TO_CUT {
             let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
             self.run.bursts += 1;
-            self.run.board.cut(&burst, bytes).map_err(of_board)?;
+            self.run.board.cut(&burst, bytes).during(CheckName::Rules)?;
             // If the request was lost, there is no burst.
             if let Some(came) = self.came_of(&burst)? {
                 self.must_tell(Rule::Cut, &Told::ended(&burst, 0..came))?;
@@ -315,7 +315,7 @@ impl Rules<'_, '_> {
         match records {
             Ok(fetched) => Ok(Some(fetched.records.len() as u32)),
             Err(BoardError::Unexpected { .. }) => Ok(None),
-            Err(error) => Err(of_board(error)),
+            Err(error) => Err(End::board(CheckName::Rules, &error)),
         }
     }
 
@@ -332,7 +332,7 @@ impl Rules<'_, '_> {
         self.drop_rows()?;
         self.clear()?;
         self.right_burst(Rule::Repeated, BurstMode::Repeating)?;
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         self.not_counted(None, &status)
     }
 }

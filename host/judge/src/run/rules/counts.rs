@@ -4,10 +4,10 @@ use std::mem;
 
 use super::rows::{FRAME, GENERATION};
 use super::without_effect::others;
-use super::{Refusals, Rules, miscounted, of_board, of_rows};
+use super::{Refusals, Rules, miscounted, of_rows};
 use crate::board::{Given, Status};
-use crate::result::{Counter, Finding, Rule};
-use crate::run::findings::End;
+use crate::result::{CheckName, Counter, Finding, Rule};
+use crate::run::findings::{During, End};
 use crate::run::frames::counters::MOVED_BY_LINKS;
 
 /// Rows of a frame whose first row is asked for again: the second one pushes it out.
@@ -41,7 +41,7 @@ impl Rules<'_, '_> {
         self.configure(ROWS)?;
         let tables = self.small.made(0, ROWS, GENERATION).tables;
         let frame = self.small.frame(FRAME, &tables).frame;
-        let before = self.run.board.status().map_err(of_board)?;
+        let before = self.run.board.status().during(CheckName::Rules)?;
         self.give(0);
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
@@ -50,7 +50,7 @@ impl Rules<'_, '_> {
         for session in others(self.run.board.session()) {
             self.run.board.acknowledge_in_session(session, second.row_sequence + 1);
         }
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         equal(
             Some(Rule::Session),
             &status,
@@ -59,14 +59,14 @@ impl Rules<'_, '_> {
         let came =
             self.run.board.again(rows[0], Some(rows[1]), 1).map_err(|error| of_rows(Rule::Again, error))?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         let repeated = before.rows_repeated.saturating_add(came.repeats.into());
         at_least(Some(Rule::Again), &status, &[(Counter::RowsRepeated, repeated)])?;
         for _ in 0..UNNEEDED {
             self.run.board.give(&first, frame.row(0));
         }
         let unneeded = status.rows_unneeded.saturating_add(UNNEEDED);
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         if self.run.board.had_each_packet_once(&status) {
             at_least(Some(Rule::Again), &status, &[(Counter::RowsUnneeded, unneeded)])?;
         }
@@ -91,9 +91,9 @@ impl Rules<'_, '_> {
         act: impl FnOnce(&mut Self) -> Result<(), End>,
     ) -> Result<(), End> {
         self.right_frames(&[FRAME])?;
-        let before = self.run.board.status().map_err(of_board)?;
+        let before = self.run.board.status().during(CheckName::Rules)?;
         act(self)?;
-        let after = self.run.board.status().map_err(of_board)?;
+        let after = self.run.board.status().during(CheckName::Rules)?;
         let counters = [Counter::RowsIn, Counter::RowsOut, Counter::SamplesOver];
         at_least(rule, &after, &counters.map(|counter| (counter, counter.in_status(&before))))
     }
@@ -102,7 +102,7 @@ impl Rules<'_, '_> {
     /// cleared ones, but the link does not make one each time.
     fn cleared(&mut self) -> Result<(), End> {
         self.right_frames(&[FRAME])?;
-        let before = self.run.board.status().map_err(of_board)?;
+        let before = self.run.board.status().during(CheckName::Rules)?;
         let had_each_once = self.run.board.had_each_packet_once(&before);
         let retries = self.run.board.tally().retries;
         let told = self.clear()?;
@@ -111,13 +111,13 @@ impl Rules<'_, '_> {
             let counters = [Counter::RowsIn, Counter::RowsOut, Counter::MostLatency];
             at_least(None, &told, &counters.map(|counter| (counter, counter.in_status(&before))))?;
         }
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         self.not_counted(None, &status)
     }
 
     /// Clears all counters, and returns what the board says that they were.
     pub(super) fn clear(&mut self) -> Result<Option<Status>, End> {
-        let told = self.run.board.clear_by(CLEAR).map_err(of_board)?;
+        let told = self.run.board.clear_by(CLEAR).during(CheckName::Rules)?;
         if told.is_some() {
             (self.refusals, self.before) = (Refusals::default(), Status::default());
         }

@@ -32,7 +32,7 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
 
 use super::at_speed::known_bursts;
-use super::findings::End;
+use super::findings::{During, End};
 use super::plan::Segment;
 use super::plan::parts::of_height;
 use super::steps::Run;
@@ -113,7 +113,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     /// Tries all rules, and returns how many requests were answered as they must be.
     fn all(mut self) -> Result<usize, End> {
         self.drop_rows()?;
-        self.before = self.run.board.status().map_err(of_board)?;
+        self.before = self.run.board.status().during(CheckName::Rules)?;
         self.requests()?;
         self.tables()?;
         self.damage()?;
@@ -157,7 +157,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             Err(BoardError::Unanswered { had: Had::Counted, .. }) => {
                 return Err(unanswered(rule, kind, answer(right)));
             }
-            Err(error) => return Err(of_board(error)),
+            Err(error) => return Err(End::board(CheckName::Rules, &error)),
         };
         Err(broken(rule, kind, right, found))
     }
@@ -246,11 +246,11 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     fn set(&mut self, geometry: &Geometry, timing: RowTiming) -> Result<(), End> {
         (self.width, self.height) = (geometry.width(), geometry.height());
-        self.run.board.configure(geometry, timing, Datapath::RowFactors).map_err(of_board)
+        self.run.board.configure(geometry, timing, Datapath::RowFactors).during(CheckName::Rules)
     }
 
     fn drop_rows(&mut self) -> Result<(), End> {
-        self.run.board.drop_rows().map_err(of_board)
+        self.run.board.drop_rows().during(CheckName::Rules)
     }
 
     /// Streams the frames of `compared`, which must come back right.
@@ -292,11 +292,6 @@ impl<'a, 'run> Rules<'a, 'run> {
     }
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "what map_err hands over")]
-fn of_board(error: BoardError) -> End {
-    End::board(CheckName::Rules, &error)
-}
-
 /// The end of waiting for rows that must come back.
 fn of_rows(rule: Rule, error: BoardError) -> End {
     match error {
@@ -304,7 +299,7 @@ fn of_rows(rule: Rule, error: BoardError) -> End {
             let right = Answer::Row { row: place.row.into(), frame: place.frame };
             unanswered(rule, Kind::RowIn, right)
         }
-        error => of_board(error),
+        error => End::board(CheckName::Rules, &error),
     }
 }
 

@@ -2,11 +2,11 @@
 
 use halfrow_protocol::message::RefusalCode;
 
+use super::Rules;
 use super::counts::at_least;
-use super::{Rules, of_board};
 use crate::board::Response;
-use crate::result::Counter;
-use crate::run::findings::End;
+use crate::result::{CheckName, Counter};
+use crate::run::findings::{During, End};
 
 /// How many refusals came.
 #[derive(Clone, Copy, Default)]
@@ -32,7 +32,7 @@ impl Rules<'_, '_> {
     /// The board must count at least the refusals that came in this session: whatever a link loses or doubles, each was
     /// sent for a request.
     pub(super) fn refusals_counted(&mut self) -> Result<(), End> {
-        let after = self.run.board.status().map_err(of_board)?;
+        let after = self.run.board.status().during(CheckName::Rules)?;
         let (Refusals { own, foreign }, before) = (self.refusals, self.before);
         at_least(
             None,

@@ -8,13 +8,13 @@ use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
 use super::counts::equal;
-use super::{FIRST_FACTOR, Rules, longer, of_board, of_rows, other_row, payload};
+use super::{FIRST_FACTOR, Rules, longer, of_rows, other_row, payload};
 use crate::board::{BoardError, CameAgain};
 use crate::reference::correct;
 use crate::result::{CheckName, Counter, Finding, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 use crate::run::sessions::window::window_wrong;
 use crate::verdict::Cause;
 
@@ -62,7 +62,7 @@ impl Rules<'_, '_> {
         self.configure(rows)?;
         self.upload(0)?;
         let Generation { number, tables, kernel } = self.small.made(0, rows, GENERATION);
-        self.run.board.commit(&tables, &kernel, FRAME, number).map_err(of_board)?;
+        self.run.board.commit(&tables, &kernel, FRAME, number).during(CheckName::Rules)?;
         self.right_frames(&[FRAME])
     }
 
@@ -153,7 +153,7 @@ impl Rules<'_, '_> {
 
     /// After a RESET no row is inside, so the window must be as far ahead as there are input banks.
     fn window(&mut self) -> Result<(), End> {
-        let rows = self.run.board.credit_after_reset().map_err(of_board)?;
+        let rows = self.run.board.credit_after_reset().during(CheckName::Rules)?;
         self.must_have_credit(rows)
     }
 
@@ -182,7 +182,7 @@ impl Rules<'_, '_> {
     fn says_entered(&mut self, place: RowPlace) -> Result<bool, End> {
         let entered = place.row_sequence + 1 + u32::from(self.capabilities.row_banks_in);
         for _ in 0..SAYINGS {
-            let (status, window) = self.run.board.status_and_window().map_err(of_board)?;
+            let (status, window) = self.run.board.status_and_window().during(CheckName::Rules)?;
             if status.core_busy == 1 || window != entered {
                 return Ok(false);
             }
@@ -197,7 +197,7 @@ impl Rules<'_, '_> {
         let mut has_come = false;
         for _ in 0..TRIES {
             self.give(0);
-            let status = self.run.board.status().map_err(of_board)?;
+            let status = self.run.board.status().during(CheckName::Rules)?;
             if status.core_busy == 1 {
                 return Ok(());
             }
@@ -314,7 +314,7 @@ impl Rules<'_, '_> {
 
     /// Whether nothing was sent again since there were `retries`, and nothing reached the board twice.
     pub(super) fn is_calm(&mut self, retries: u64) -> Result<bool, End> {
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         let board = &self.run.board;
         Ok(board.tally().retries == retries && board.had_each_packet_once(&status))
     }
@@ -325,7 +325,7 @@ impl Rules<'_, '_> {
             self.give(0);
             self.give(1);
             let given = mem::take(&mut self.given).rows;
-            self.run.board.drop_rows_after(bytes, given).map_err(of_board)?;
+            self.run.board.drop_rows_after(bytes, given).during(CheckName::Rules)?;
             // Whatever row was last before, only row 0 may be first now.
             for row in [1, 2] {
                 let place = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(row) };
@@ -357,7 +357,7 @@ impl Rules<'_, '_> {
         for bit in FAR..u32::BITS {
             let next_row = (1 << bit) - 2;
             if next_row > self.run.board.credit() {
-                self.run.board.go_on_from(next_row).map_err(of_board)?;
+                self.run.board.go_on_from(next_row).during(CheckName::Rules)?;
                 self.right_frames(&[FRAME])?;
                 self.counted()?;
             }
@@ -367,7 +367,7 @@ impl Rules<'_, '_> {
 
     /// The board's row numbers must be the host's.
     fn counted(&mut self) -> Result<(), End> {
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         let right = self.run.board.acknowledged();
         equal(
             Some(Rule::RowNumber),

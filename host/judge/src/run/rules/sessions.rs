@@ -11,12 +11,12 @@ use super::bursts::Awaited;
 use super::counts::equal;
 use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
-use super::{FIRST_FACTOR, Refusals, Rules, broken, of_board};
+use super::{FIRST_FACTOR, Refusals, Rules, broken};
 use crate::board::{Board, BoardError, Given, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::known_bursts;
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 use crate::run::frames::counters::rows_numbered;
 
 /// How often a board must do what it must not, where a link or the board's supply could cause it too, though not every
@@ -96,7 +96,7 @@ impl Rules<'_, '_> {
     /// Another host must be told that the board is held, and for how long at most.
     fn held(&mut self) -> Result<(), End> {
         let begun = self.run.board.now();
-        self.run.board.status().map_err(of_board)?;
+        self.run.board.status().during(CheckName::Rules)?;
         let said = self.run.board.greet_as_another_host();
         if matches!(said, Ok(Response::Replied(_))) {
             let took = self.run.board.now().saturating_sub(begun);
@@ -118,7 +118,7 @@ impl Rules<'_, '_> {
 
     /// Another host that takes the board over must get it, whoever holds it.
     fn taken_over(&mut self) -> Result<(), End> {
-        self.run.board.status().map_err(of_board)?;
+        self.run.board.status().during(CheckName::Rules)?;
         self.ends_right()?;
         let said = self.run.board.take_over_as_another_host().map(|said| match said {
             Response::Replied(_) => Response::Replied(Vec::new()),
@@ -131,7 +131,7 @@ impl Rules<'_, '_> {
             BoardError::NotGivenUp { .. } => {
                 broken(Rule::Held, Kind::Hello, Answer::Replied { payload: String::new() }, held)
             }
-            error => of_board(error),
+            error => End::board(CheckName::Rules, &error),
         })
     }
 
@@ -156,7 +156,7 @@ impl Rules<'_, '_> {
 
     /// After a RESET to a smaller number the window must be as far ahead of that one as there are input banks.
     fn window_goes_down(&mut self) -> Result<(), End> {
-        let rows = self.run.board.credit_after_reset_to(SMALLER).map_err(of_board)?;
+        let rows = self.run.board.credit_after_reset_to(SMALLER).during(CheckName::Rules)?;
         self.must_have_credit(rows)
     }
 
@@ -165,10 +165,10 @@ impl Rules<'_, '_> {
         self.rows_again()?;
         self.counts_on(Some(Rule::NewSession), |rules| {
             let own = rules.run.board.session();
-            let again = rules.run.board.greet_again().map_err(of_board)?.session;
+            let again = rules.run.board.greet_again().during(CheckName::Rules)?.session;
             if again != own {
                 // The window is not known until the board has answered in the new session.
-                rules.run.board.status().map_err(of_board)?;
+                rules.run.board.status().during(CheckName::Rules)?;
                 return Err(another_session(own, again));
             }
             rules.right += 1;
@@ -201,12 +201,12 @@ impl Rules<'_, '_> {
         if two_banks {
             let Generation { tables, kernel, .. } = self.small.made(1, self.height, generation);
             self.upload(1)?;
-            self.run.board.commit(&tables, &kernel, frame, generation).map_err(of_board)?;
+            self.run.board.commit(&tables, &kernel, frame, generation).during(CheckName::Rules)?;
         }
         if self.height > 2 {
             self.enter()?;
         }
-        let before = self.run.board.status().map_err(of_board)?;
+        let before = self.run.board.status().during(CheckName::Rules)?;
         self.given = Given::default();
         self.next_session()?;
         self.begun_anew(Rule::NewSession, &before)?;
@@ -217,7 +217,7 @@ impl Rules<'_, '_> {
             self.sums(Rule::NewSession, 1)?;
         }
         self.right_frames(&[frame, FRAME])?;
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         rows_numbered(&status, self.run.board.packets_numbered())
     }
 
@@ -230,7 +230,7 @@ impl Rules<'_, '_> {
         let frame = self.expect_others_from(SECOND_ROW)?;
         let burst = self.start(Burst { mode, ..burst })?;
         self.look(&burst, 0, FEW, Awaited::under_way(FEW))?;
-        let before = self.run.board.status().map_err(of_board)?;
+        let before = self.run.board.status().during(CheckName::Rules)?;
         self.next_session()?;
         self.begun_anew(Rule::NewSession, &before)?;
         self.right_frames(&[FRAME])?;
@@ -246,12 +246,12 @@ impl Rules<'_, '_> {
         for _ in 0..TIMES {
             self.drop_rows()?;
             self.rows_again()?;
-            let before = self.run.board.status().map_err(of_board)?;
+            let before = self.run.board.status().during(CheckName::Rules)?;
             let own = self.run.board.session();
             self.close(own)?;
             match self.greet() {
                 Err(BoardError::Held { .. }) => return Ok(()),
-                Err(error) => return Err(of_board(error)),
+                Err(error) => return Err(End::board(CheckName::Rules, &error)),
                 Ok(()) => {}
             }
             // Otherwise another host had the board meanwhile, or its supply failed.
@@ -265,7 +265,7 @@ impl Rules<'_, '_> {
 
     fn close(&mut self, session: u8) -> Result<(), End> {
         self.ends_right()?;
-        self.run.board.close_session().map_err(of_board)?;
+        self.run.board.close_session().during(CheckName::Rules)?;
         let said = self.run.board.ask_in_session(session, Kind::Status, &[0]);
         let refusal = Refusal { code: RefusalCode::Session, kind: Kind::Status.code(), detail: 0 };
         self.judge(Rule::Closed, Kind::Status, said, &Response::Refused(refusal))
@@ -274,10 +274,10 @@ impl Rules<'_, '_> {
     /// Drops configuration and tables, which must leave the session open.
     pub(super) fn forget(&mut self) -> Result<(), End> {
         for _ in 0..TIMES {
-            self.run.board.forget().map_err(of_board)?;
+            self.run.board.forget().during(CheckName::Rules)?;
             match self.run.board.status() {
                 Err(BoardError::SessionLost) => self.next_session()?,
-                status => return status.map(drop).map_err(of_board),
+                status => return status.map(drop).during(CheckName::Rules),
             }
         }
         let (right, code) = (Answer::Replied { payload: String::new() }, RefusalCode::Session as u8);
@@ -287,7 +287,7 @@ impl Rules<'_, '_> {
     /// Opens the next session. A doubt about the link in the session before stays.
     pub(super) fn next_session(&mut self) -> Result<(), End> {
         self.ends_right()?;
-        self.greet().map_err(of_board)
+        self.greet().during(CheckName::Rules)
     }
 
     fn greet(&mut self) -> Result<(), BoardError> {
@@ -312,7 +312,7 @@ impl Rules<'_, '_> {
     /// After HELLO no row, burst, commit or count may be left of the session before. Tables and configuration must be as they
     /// were at the status `before`.
     fn begun_anew(&mut self, rule: Rule, before: &Status) -> Result<(), End> {
-        let status = self.run.board.status().map_err(of_board)?;
+        let status = self.run.board.status().during(CheckName::Rules)?;
         self.not_counted(Some(rule), &status)?;
         equal(
             Some(rule),

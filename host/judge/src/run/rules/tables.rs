@@ -6,11 +6,11 @@ use std::ops::Range;
 use halfrow_model::RowFactor;
 use halfrow_protocol::message::{Bank, Entries, NODE_BYTES, NODES, RefusalCode, Request, Span, Table};
 
-use super::{FIRST_FACTOR, Rules, of_board, payload};
+use super::{FIRST_FACTOR, Rules, payload};
 use crate::board::{Board, TablePort};
-use crate::result::Rule;
+use crate::result::{CheckName, Rule};
 use crate::run::Generation;
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 
 const NODE_COUNT: u16 = NODES as u16;
 
@@ -26,7 +26,7 @@ impl Rules<'_, '_> {
     /// Writes the small tables at `place` into the shadow bank.
     pub(super) fn upload(&mut self, place: usize) -> Result<(), End> {
         let Generation { tables, kernel, .. } = &self.small.tables[place];
-        self.run.board.upload(tables, kernel).map_err(of_board)
+        self.run.board.upload(tables, kernel).during(CheckName::Rules)
     }
 
     /// Every port must read the small tables at `place` in the shadow bank.

@@ -9,12 +9,12 @@ use rand_pcg::Pcg64Mcg;
 use super::bursts::{Awaited, PATIENCE};
 use super::compared::Compared;
 use super::rows::{FRAME, GENERATION};
-use super::{Rules, longer, of_board};
+use super::{Rules, longer};
 use crate::reference::correct;
-use crate::result::Rule;
+use crate::result::{CheckName, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{drawn_factors, known_bursts};
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 use crate::run::plan::parts::of_height;
 use crate::run::plan::variations::Build;
 
@@ -50,7 +50,7 @@ impl Rules<'_, '_> {
             if let Some(last) = expected.last_mut().filter(|_| row + 1 < rows.len()) {
                 *last = !*last;
             }
-            self.run.board.expect(&expected).map_err(of_board)?;
+            self.run.board.expect(&expected).during(CheckName::Rules)?;
             self.trapping()?;
             self.kept(row, rows[row])?;
         }
@@ -89,7 +89,7 @@ impl Rules<'_, '_> {
         let Some(last) = expected.last_mut() else { return Ok(()) };
         *last = !*last;
         let row = frame.height() - 1;
-        self.run.board.expect(&expected).map_err(of_board)?;
+        self.run.board.expect(&expected).during(CheckName::Rules)?;
         self.trapping()?;
         self.kept(row, frame.row(row))
     }
@@ -101,7 +101,7 @@ impl Rules<'_, '_> {
         let Some(frame) = self.trapped_frame(&made).filter(|_| self.has_trap()) else { return Ok(None) };
         let mut expected: Vec<_> = frame.rows().map(row_signature).collect();
         expected.iter_mut().skip(row).for_each(|signature| *signature = !0);
-        self.run.board.expect(&expected).map_err(of_board)?;
+        self.run.board.expect(&expected).during(CheckName::Rules)?;
         Ok(Some(frame))
     }
 
@@ -120,11 +120,11 @@ impl Rules<'_, '_> {
         if self.time_of(2) > PATIENCE {
             return Ok(());
         }
-        self.run.board.upload(&made.tables, &made.kernel).map_err(of_board)?;
+        self.run.board.upload(&made.tables, &made.kernel).during(CheckName::Rules)?;
         let Some(first_row) = made.upper(1) else { return Ok(()) };
         self.configure(1)?;
         let Generation { number, tables, kernel } = &first_row;
-        self.run.board.commit(tables, kernel, FRAME, *number).map_err(of_board)?;
+        self.run.board.commit(tables, kernel, FRAME, *number).during(CheckName::Rules)?;
         self.frames(Rule::Rows, Compared::default().with(&self.small, [FRAME], &first_row))?;
         self.configure(rows)?;
         self.last_row_trapped(&made)

@@ -6,11 +6,11 @@ use std::time::Duration;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Burst, BurstState, Records, RefusalCode, Request};
 
+use super::Rules;
 use super::bursts::{Awaited, Held, LONGEST_IDLE, PATIENCE, Told};
-use super::{Rules, of_board};
 use crate::board::Response;
-use crate::result::Rule;
-use crate::run::findings::End;
+use crate::result::{CheckName, Rule};
+use crate::run::findings::{During, End};
 
 /// How many records are freed each time that a burst waits for free ones.
 const TAKEN: [u32; 4] = [5, 1, 9, 4];
@@ -101,8 +101,8 @@ impl Rules<'_, '_> {
         let mut left = time + self.time_of(1);
         while !left.is_zero() {
             let idle = left.min(LONGEST_IDLE);
-            self.run.board.idle(idle).map_err(of_board)?;
-            self.run.board.records(burst.burst, from).map_err(of_board)?;
+            self.run.board.idle(idle).during(CheckName::Rules)?;
+            self.run.board.records(burst.burst, from).during(CheckName::Rules)?;
             left -= idle;
         }
         Ok(())

@@ -4,13 +4,13 @@ use halfrow_model::Geometry;
 use halfrow_protocol::message::{RefusalCode, RowPlace};
 use rand_pcg::Pcg64Mcg;
 
+use super::Rules;
 use super::compared::Compared;
-use super::{Rules, of_board};
 use crate::board::RowTiming;
-use crate::result::Rule;
+use crate::result::{CheckName, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::drawn_factors;
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 use crate::run::plan::variations::Build;
 
 /// The generation with which they are made.
@@ -28,8 +28,8 @@ impl Rules<'_, '_> {
         let gap_seed = !self.small.seed | 1;
         self.set(tables.geometry(), RowTiming { gap_seed, ..RowTiming::default() })?;
         let board = &mut self.run.board;
-        board.upload(tables, kernel).map_err(of_board)?;
-        board.commit(tables, kernel, FRAME, *number).map_err(of_board)?;
+        board.upload(tables, kernel).during(CheckName::Rules)?;
+        board.commit(tables, kernel, FRAME, *number).during(CheckName::Rules)?;
         let narrow = tables.geometry().width() as u16 - 2;
         let place = RowPlace { frame: FRAME, width: narrow, last: false, ..self.place(0) };
         self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;

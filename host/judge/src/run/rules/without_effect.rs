@@ -4,10 +4,10 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
 
 use super::sessions::TIMES;
-use super::{FIRST_FACTOR, Rules, answer, broken, miscounted, of_board, payload};
+use super::{FIRST_FACTOR, Rules, answer, broken, miscounted, payload};
 use crate::board::{BoardError, Response};
-use crate::result::{Answer, Counter, Rule};
-use crate::run::findings::End;
+use crate::result::{Answer, CheckName, Counter, Rule};
+use crate::run::findings::{During, End};
 
 /// The row factor that must stay in its place.
 const KEPT: [u8; 4] = 1_u32.to_le_bytes();
@@ -39,7 +39,7 @@ impl Rules<'_, '_> {
         match self.run.board.answer_to_damaged() {
             None => Ok(()),
             Some(said) => {
-                self.run.board.excuse_repeats().map_err(of_board)?;
+                self.run.board.excuse_repeats().during(CheckName::Rules)?;
                 Err(broken(Rule::Damage, write(&OTHER).kind(), Answer::Nothing {}, answer(&said)))
             }
         }
@@ -53,12 +53,12 @@ impl Rules<'_, '_> {
         if board.rows_came() < ROWS || board.rows_doubled() > 0 || 2 * twice < answered {
             return Ok(());
         }
-        let status = board.status().map_err(of_board)?;
+        let status = board.status().during(CheckName::Rules)?;
         if !board.had_each_packet_once(&status) {
             return Ok(());
         }
         // The repeats are the finding, and so no reason to doubt it.
-        board.excuse_repeats().map_err(of_board)?;
+        board.excuse_repeats().during(CheckName::Rules)?;
         let right = Answer::Replied { payload: String::new() };
         Err(broken(Rule::Once, Kind::TableWrite, right, Answer::Twice {}))
     }
@@ -73,9 +73,9 @@ impl Rules<'_, '_> {
     /// Damaged packets must be counted by their kind. What stands between host and board may drop some of a kind, such as
     /// those that do not unstuff, or all of both.
     fn damage_counted(&mut self) -> Result<(), End> {
-        let before = self.run.board.status().map_err(of_board)?;
+        let before = self.run.board.status().during(CheckName::Rules)?;
         let (_, [crc, framing]) = self.after_damage()?;
-        let after = self.run.board.status().map_err(of_board)?;
+        let after = self.run.board.status().during(CheckName::Rules)?;
         if !self.run.board.had_each_packet_once(&after) {
             return Ok(());
         }
@@ -123,7 +123,7 @@ impl Rules<'_, '_> {
     fn judge_kept(&mut self, rule: Rule, said: Result<Response, BoardError>) -> Result<(), End> {
         if is_other(&said) {
             // Whatever else the link did, only a packet that must have no effect can have written this.
-            self.run.board.excuse_repeats().map_err(of_board)?;
+            self.run.board.excuse_repeats().during(CheckName::Rules)?;
         }
         self.judge(rule, READ.kind(), said, &Response::Replied(payload(&write(&KEPT))))
     }

@@ -4,7 +4,7 @@ use std::iter;
 
 use crate::board::{NumberedFrame, Unjudged};
 use crate::progress::Step;
-use crate::result::{CheckName, Finding, Problem};
+use crate::result::{CheckName, Finding};
 use crate::run::findings::{During, End};
 use crate::run::plan::Segment;
 use crate::run::steps::Run;
@@ -77,8 +77,7 @@ impl Run<'_> {
         if next.is_none() || later.is_some() {
             // Tables become active only when a frame enters.
             let rendered = self.plan.render(frame, &segment.geometry);
-            let rendered = rendered
-                .map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
+            let rendered = rendered.map_err(|error| End::station(CheckName::Frames, &error))?;
             self.findings.attempt.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
             self.board.stream(&mut Unjudged(iter::once(played))).during(CheckName::Frames)?;
