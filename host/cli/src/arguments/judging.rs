@@ -62,6 +62,16 @@ pub(crate) struct RunArguments {
     pub(crate) lens: LensArguments,
 }
 
+/// A run as a call asks for it.
+pub(crate) struct Planned {
+    pub(crate) plan: Plan,
+    pub(crate) options: RunOptions,
+    /// The recording of the run to judge again, if it is one.
+    pub(crate) recording: Option<Recording>,
+    /// The files that the plan was made from.
+    pub(crate) inputs: Vec<PathBuf>,
+}
+
 /// Where a run writes. The places are taken.
 struct Outputs {
     /// The report's folder.
@@ -161,32 +171,30 @@ impl RunArguments {
         self.report.as_deref().or(settings.report.as_deref())
     }
 
-    /// Judges by `plan` the board that is named, or the one in `recording`, and records the run to `record`. The plan was made
-    /// from the files `inputs`.
+    /// Judges the board that is named, or the one in the recording, and records the run to `record`.
     ///
     /// A pool is asked for a board last, so that no wrong call waits for one or takes one from others.
     pub(crate) fn judge(
         &self,
-        (plan, options): (&Plan, RunOptions),
-        recording: Option<Recording>,
-        inputs: Vec<PathBuf>,
+        planned: Planned,
         record: Option<&Path>,
         context: &Context,
     ) -> Result<Exit, Failure> {
+        let Planned { plan, options, recording, inputs } = planned;
         let settings = &context.settings;
         self.check_files(inputs, record, context)?;
         let leased = self.board.target(settings);
         // Not before: while the call waits for a board, there is no run whose time passes or that a signal must end in order.
         let options = RunOptions { stop: self.board.stop(settings)?, ..options };
         if let Ok(target) = &leased {
-            check_fault(target, plan)?;
+            check_fault(target, &plan)?;
         }
         let outputs = self.outputs(record, context)?;
         let (target, candidate) = match leased {
             Ok(target) => (target, self.board.candidate_of(settings, recording)),
             Err(failure) => (self.board.named(settings)?, Err(failure)),
         };
-        judge(candidate, (plan, &options), &target, outputs, context)
+        judge_and_report(candidate, &plan, &options, &target, outputs, context)
     }
 
     /// Checks everything that the run reads, including `inputs`, and writes.
@@ -237,9 +245,10 @@ pub(crate) fn time_limit(option: &'static str, seconds: Option<f64>) -> Result<O
 }
 
 /// Judges the board of `candidate`, which `target` names, writes the report, if there is a folder for it, and prints it.
-fn judge(
+fn judge_and_report(
     candidate: Result<Candidate, Failure>,
-    (plan, options): (&Plan, &RunOptions),
+    plan: &Plan,
+    options: &RunOptions,
     target: &Target,
     outputs: Outputs,
     context: &Context,
@@ -253,7 +262,7 @@ fn judge(
     });
     let (mut finished, lost) = match judged {
         Ok(judged) => judged,
-        Err(failure) => return Err(not_begun(failure, (plan, options), target, folder)),
+        Err(failure) => return Err(not_begun(failure, plan, options, target, folder)),
     };
     let lacks = [finished.note_recording(&lost), folder.and_then(|folder| finished.commit(folder).err())];
     lacks.iter().flatten().for_each(tell);
@@ -270,7 +279,8 @@ fn judge(
 /// earlier report for its own; and returns the failure. A wrong call is no run and has no report.
 fn not_begun(
     failure: Failure,
-    (plan, options): (&Plan, &RunOptions),
+    plan: &Plan,
+    options: &RunOptions,
     target: &Target,
     folder: Option<ReportFolder>,
 ) -> Failure {

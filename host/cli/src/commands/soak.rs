@@ -8,7 +8,7 @@ use halfrow_program::number::{counted, number};
 use super::{Context, Failure};
 use crate::arguments::board::refuse_recording;
 use crate::arguments::given::Given;
-use crate::arguments::judging::RunArguments;
+use crate::arguments::judging::{Planned, RunArguments};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use halfrow::frames::Builtin;
@@ -55,7 +55,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     refuse_recording(&run.board.named(settings)?)?;
     run.check_inputs(settings)?;
     let (plan, options) = arguments.plan(settings)?;
-    run.judge((&plan, options), None, run.input_files(settings), None, context)
+    let planned = Planned { plan, options, recording: None, inputs: run.input_files(settings) };
+    run.judge(planned, None, context)
 }
 
 impl Arguments {

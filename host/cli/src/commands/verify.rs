@@ -13,7 +13,7 @@ use super::{Context, Failure};
 use crate::arguments::board::{self, MOCK, Replays};
 use crate::arguments::given::{Decider, Given};
 use crate::arguments::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
-use crate::arguments::judging::{RunArguments, seconds};
+use crate::arguments::judging::{Planned, RunArguments, seconds};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use halfrow::call::{self, Input};
@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
     let recording = arguments.run.board.recording(settings)?;
     let frames = arguments.frames(settings)?;
-    let files = arguments.input_files(&frames, settings);
+    let inputs = arguments.input_files(&frames, settings);
     let (plan, options) = arguments.planned(recording.as_ref(), frames, context)?;
     if arguments.list {
         // The cost of a run can be computed without the device.
@@ -83,7 +83,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         board::check_fault(&target, &plan)?;
         return listing::list(&plan, &target, context.json);
     }
-    arguments.run.judge((&plan, options), recording, files, arguments.record.as_deref(), context)
+    let planned = Planned { plan, options, recording, inputs };
+    arguments.run.judge(planned, arguments.record.as_deref(), context)
 }
 
 fn wrong_frame(error: impl Into<anyhow::Error>) -> Failure {
