@@ -93,6 +93,12 @@ impl Measurement {
     pub fn named(name: &str) -> Option<Self> {
         MEASUREMENTS.into_iter().find(|measurement| measurement.name == name)
     }
+
+    /// Whether it is the time that samples take through the board, which is never 0.
+    #[must_use]
+    pub(super) fn is_latency(&self) -> bool {
+        self.name.starts_with("latency.")
+    }
 }
 
 /// A limit on a measurement. It has a least value, a most value, or both.

@@ -344,6 +344,7 @@ fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Lim
         return Err(Fault::wrong(unit.span().start, what, remedy));
     }
     let (least, most) = bounds(at, text)?;
+    check_most(measurement, text.most.as_ref())?;
     let blames = text.blames.unwrap_or(measurement.blames);
     if blames == Blame::Board && measurement.blames != Blame::Board {
         let what =
@@ -351,6 +352,23 @@ fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Lim
         return Err(Fault::wrong(at, what, "write blames = \"station\" or blames = \"nobody\""));
     }
     Ok(Limit { measurement, least, most, blames })
+}
+
+/// Refuses a most value that whatever is measured is beyond: nothing is below 0, and no latency is 0.
+fn check_most(measurement: Measurement, most: Option<&Spanned<f64>>) -> Result<(), Fault> {
+    let Measurement { name, .. } = measurement;
+    let Some(most) = most else { return Ok(()) };
+    let (at, value) = (most.span().start, *most.get_ref());
+    let (is_possible, remedy) = if measurement.is_latency() {
+        (value > 0.0, "write a number above 0")
+    } else {
+        (value >= 0.0, "write a number from 0 on")
+    };
+    if is_possible {
+        Ok(())
+    } else {
+        Err(Fault::wrong(at, format!("{name} is never at most {value}"), remedy))
+    }
 }
 
 /// The least and the most value, at least one of which is given.

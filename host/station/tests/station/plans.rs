@@ -1,5 +1,6 @@
 //! Plans: what is accepted, and what is refused with its line and a remedy.
 
+mod limits;
 mod tables;
 
 use std::fs;
