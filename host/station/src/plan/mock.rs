@@ -3,11 +3,16 @@
 //! It shows that the station and its plan tell a bad board from a good one. It shows nothing about the fixture, the
 //! cable or the lane's board.
 
+use halfrow::model::TableSet;
+
 use super::serial::RESERVED;
 use super::{Selected, StepKind};
 
 /// What stands for it in a plan, and the barcode that has a lane judge it.
 pub(crate) const BARCODE: &str = "HR:MOCK";
+
+/// The most columns of a frame, and entries of a grid, that a mock board takes unless its target says otherwise.
+const DEFAULT: usize = 2048;
 
 /// Faults of the datapath that even the fewest frames of a plan show, whatever is drawn, each with its parameters; not
 /// all that the mock has. Bits are flipped hidden, because a board that notices a flipped bit refuses its tables, and
@@ -46,15 +51,32 @@ pub fn serial(lane: &str) -> String {
     format!("{BARCODE}:{lane}")
 }
 
+/// All tables by which `selected` judges.
+fn tables(selected: &Selected) -> impl Iterator<Item = &TableSet> {
+    selected.steps.iter().filter_map(|step| match &step.kind {
+        StepKind::Verify(judging) => Some(&judging.chosen.tables),
+        StepKind::Identity | StepKind::Link { .. } => None,
+    })
+}
+
+/// The options of a mock board that takes these tables, as far as it does not by default. No frame has too many rows.
+fn room(selected: &Selected) -> String {
+    let width = tables(selected).map(|tables| tables.geometry().width()).max();
+    let entries =
+        tables(selected).filter(|tables| tables.shape().is_some()).map(|tables| tables.entries().len()).max();
+    let option = |key, needed: Option<usize>| {
+        needed
+            .filter(|needed| *needed > DEFAULT)
+            .map_or_else(String::new, |needed| format!(",{key}={needed}"))
+    };
+    option("max-width", width) + &option("entries", entries)
+}
+
 /// The target string of a mock board with a fault drawn by `seed`, which steps of `selected` can find.
 #[must_use]
 pub fn target(seed: u64, selected: &Selected) -> String {
-    let rows = selected.steps.iter().filter_map(|step| match &step.kind {
-        StepKind::Verify(judging) => Some(judging.chosen.tables.geometry().height() as u64),
-        StepKind::Identity | StepKind::Link { .. } => None,
-    });
     let mut drawn = Drawn(seed);
-    let rows = rows.min().unwrap_or(1);
+    let rows = tables(selected).map(|tables| tables.geometry().height() as u64).min().unwrap_or(1);
     let Some((name, parameters)) = FAULTS.get(drawn.below(FAULTS.len() as u64) as usize) else {
         return "mock".to_owned();
     };
@@ -67,7 +89,7 @@ pub fn target(seed: u64, selected: &Selected) -> String {
     };
     let parameters: String =
         parameters.iter().map(|(key, values)| format!(",{key}={}", value(*values))).collect();
-    format!("mock,fault={name}{parameters}")
+    format!("mock{},fault={name}{parameters}", room(selected))
 }
 
 /// What is left of a seed from which numbers are drawn.
@@ -85,6 +107,7 @@ impl Drawn {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
+    use std::fs;
 
     use super::*;
     use crate::plan::Plan;
@@ -100,6 +123,33 @@ mod tests {
         assert!(targets.len() > 300, "{}", targets.len());
         for target in targets {
             halfrow::link::open(&target.parse().unwrap()).unwrap();
+        }
+    }
+
+    /// A frame of 2592 columns, and a grid with more entries than a bank has by default (fpga/DATAPATH.md).
+    #[test]
+    fn the_mock_has_room_for_whatever_the_plan_judges() {
+        use halfrow::model::{BitDepth, Geometry, GridShape, Interpolant, TableSet};
+        let folder = tempfile::tempdir().unwrap();
+        let tall = Geometry::centred(64, 2048, BitDepth::Ten).unwrap();
+        let shape = GridShape::new(1, 5).unwrap();
+        let tables = TableSet::from_grid(tall, shape, &vec![1 << 24; shape.entries(&tall)]).unwrap();
+        let file = halfrow::tables::TableFile { tables, kernel: Interpolant::Hermite.into(), about: None };
+        fs::write(folder.path().join("grid.json"), file.to_json()).unwrap();
+        let usual = "radius = 200.0\nwidth = 320\nheight = 240";
+        for tables in ["width = 2592\nheight = 8", "file = \"grid.json\""] {
+            let text = include_str!("../../assets/demo-plan.toml").replace(usual, tables);
+            let text = text.replace(", \"builtin:street\"", "");
+            let plan = Plan::parse(&folder.path().join("plan.toml"), text).unwrap();
+            let selected = plan.variant("");
+            let StepKind::Verify(judging) = &selected.steps[1].kind else { panic!("{selected:?}") };
+            // The first seed draws a bit of the data that is stuck, which every frame shows.
+            let target: halfrow::target::Target = target(0, selected).parse().unwrap();
+            let candidate = halfrow::link::open(&target).unwrap();
+            let options = halfrow::RunOptions::default();
+            let judged = halfrow::verify(&judging.plan(0), candidate, &options, &halfrow::progress::Silent);
+            let verdict = judged.map(|judged| judged.report.verdict());
+            assert_eq!(verdict, Ok(halfrow::Verdict::Fail), "{target}");
         }
     }
 
