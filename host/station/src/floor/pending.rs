@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Effect, Floor, ScanError, ScanOutcome};
+use super::{Accepted, Effect, Floor, ScanError, ScanOutcome};
 use crate::said::{Said, Saying};
 
 /// How long a serial number waits for a lane.
@@ -86,6 +86,13 @@ impl Floor {
         }
     }
 
+    /// Reads the serial number by the plans of the first lane that takes it. Each lane has plans of its own: two that would both
+    /// take it may be in different lanes, and a board comes into one.
+    fn read_for_any(&self, serial: &str, operator: &str) -> Result<Accepted, ScanError> {
+        let by_a_lane = self.plans_of.iter().find_map(|plans| self.read(plans, serial, operator).ok());
+        by_a_lane.map_or_else(|| self.read(&self.plans_of.concat(), serial, operator), Ok)
+    }
+
     /// Keeps the serial number for the next lane into which a board is plugged.
     pub(super) fn keep(
         &mut self,
@@ -93,8 +100,7 @@ impl Floor {
         operator: &str,
         now: Duration,
     ) -> Result<ScanOutcome, ScanError> {
-        let all: Vec<usize> = (0..self.rules.len()).collect();
-        let accepted = self.read(&all, &serial, operator)?;
+        let accepted = self.read_for_any(&serial, operator)?;
         self.refuse_elsewhere(usize::MAX, &accepted)?;
         let said = match self.pending(now).map(str::to_owned) {
             Some(other) => Saying::WaitsInstead { serial: serial.clone(), other },

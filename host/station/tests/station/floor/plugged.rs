@@ -1,7 +1,7 @@
 //! Boards that are plugged in: after a verdict, and after their serial number was scanned.
 
 use halfrow::Verdict;
-use halfrow_station::floor::{Act, Effect, Event, Floor, Owes, Place, Shown, Word};
+use halfrow_station::floor::{Act, Effect, Event, Floor, Owes, Place, ScanError, Shown, Word};
 use halfrow_station::said::Said;
 
 use super::{PLUG, SCAN, WEBER, at, floor, look, plug, rule, serial, shown, words};
@@ -302,4 +302,35 @@ fn why_a_run_was_not_begun_is_kept_beside_what_its_lane_owes_until_the_next_scan
     floor.scan(&serial(1), WEBER, at(6)).unwrap();
     floor.happened(0, Event::NotBegun { why: said("the disk is full") });
     assert_eq!(told(&floor), ["the disk is full", ""], "once and not twice");
+}
+
+/// Each lane has a plan of its own for the same product, and the station a third one for jobs.
+#[test]
+fn a_number_waits_for_its_board_if_one_lane_takes_it_whatever_other_lanes_have() {
+    let place = |name: &str, plans| Place { name: name.to_owned(), starts: SCAN, plans };
+    let places = vec![place("1", vec![0]), place("2", vec![1]), place("3", vec![3])];
+    let rules = vec![rule("CAM-A", "CA"), rule("CAM-A", "CA"), rule("CAM-A", "CA"), rule("CAM-B", "CB")];
+    let mut floor = Floor::new(places, rules, true);
+    assert_eq!(floor.scan(&serial(0), WEBER, at(10)).unwrap().lane, None);
+    look(&mut floor, 1, true, at(11));
+    let begun = floor.looked(&[], at(12));
+    assert!(matches!(&begun[..], [(1, Some(Effect::Begin(of)))] if of.plan == 1), "{begun:?}");
+    let elsewhere = floor.scan(&serial(0), WEBER, at(13)).unwrap_err();
+    assert_eq!(elsewhere, ScanError::Elsewhere { serial: serial(0), lane: "2".to_owned() });
+    let no_lanes = floor.scan(&serial(1).replace("CA", "CC"), WEBER, at(14)).unwrap_err();
+    assert!(matches!(no_lanes, ScanError::Serial(_)), "{no_lanes:?}");
+    floor.scan(&serial(1), WEBER, at(15)).unwrap();
+    look(&mut floor, 2, true, at(16));
+    assert_eq!(floor.looked(&[], at(17)), [], "the lane has no plan for it");
+    assert!(floor.lanes()[2].note().unwrap().to_string().contains("and is not tested"));
+}
+
+/// A lane that could not tell which plan is meant does not keep a number from waiting for it in vain.
+#[test]
+fn a_number_that_no_lane_takes_does_not_wait() {
+    let place = |name: &str, plans| Place { name: name.to_owned(), starts: SCAN, plans };
+    let places = vec![place("1", vec![0, 1]), place("2", vec![2])];
+    let rules = vec![rule("CAM-A", "CA"), rule("CAM-B", "C[AB]"), rule("CAM-C", "CC")];
+    let mut floor = Floor::new(places, rules, true);
+    assert!(matches!(floor.scan(&serial(0), WEBER, at(0)), Err(ScanError::Ambiguous { .. })));
 }
