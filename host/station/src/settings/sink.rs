@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use axum::http::Uri;
+use axum::http::uri::Authority;
 use toml::Spanned;
 use ureq::{Proxy, ProxyProtocol};
 
@@ -189,9 +190,14 @@ fn proxy(text: Option<&Spanned<String>>, to: &SinkAddress) -> Result<Option<Prox
     let (Some("http"), Some(authority), "/") = (uri.scheme_str(), authority, uri.path()) else {
         return Err(no_proxy());
     };
-    let proxy = Proxy::builder(ProxyProtocol::Http).host(authority.host());
-    let proxy = proxy.port(authority.port_u16().unwrap_or(HTTP[0].1));
+    let port = port(authority, HTTP[0].1).ok_or_else(no_proxy)?;
+    let proxy = Proxy::builder(ProxyProtocol::Http).host(authority.host()).port(port);
     proxy.build().map(Some).map_err(|_| no_proxy())
+}
+
+/// The port of an address without a user; `default` if it names none. None if it names one that no computer has.
+fn port(authority: &Authority, default: u16) -> Option<u16> {
+    if authority.as_str() == authority.host() { Some(default) } else { authority.port_u16() }
 }
 
 /// The address of a sink. What leaves this computer goes through TLS, and no address has a password.
@@ -203,17 +209,19 @@ fn address(
     let (at, url) = (text.span().start, text.get_ref());
     let wrong = |what: String, remedy: String| Fault::wrong(at, what, remedy);
     let example = format!("write it as {}://host/path", protected.0);
-    let uri: Uri = url.parse().map_err(|_| wrong("this is no address".to_owned(), example.clone()))?;
+    let none = || wrong("this is no address".to_owned(), example.clone());
+    let uri: Uri = url.parse().map_err(|_| none())?;
     let (Some(scheme), Some(authority)) = (uri.scheme_str(), uri.authority()) else {
         return Err(wrong("this is no whole address".to_owned(), example));
     };
-    let Some((scheme, port)) = [open, protected].into_iter().find(|(name, _)| *name == scheme) else {
+    let Some((scheme, default)) = [open, protected].into_iter().find(|(name, _)| *name == scheme) else {
         return Err(wrong(format!("nothing is sent by {scheme}"), example));
     };
     if authority.as_str().contains('@') {
         let what = "anybody may see who and with what password who sees these settings";
         return Err(wrong(what.to_owned(), "write it into a file of its own, and its name here".to_owned()));
     }
+    let port = port(authority, default).ok_or_else(none)?;
     let is_protected = scheme == protected.0;
     if !is_protected && !trust::is_near(authority.host()) {
         let what = format!("{scheme} would send results openly to {}", authority.host());
@@ -222,7 +230,7 @@ fn address(
     Ok(SinkAddress {
         url: url.clone(),
         host: authority.host().to_owned(),
-        port: authority.port_u16().unwrap_or(port),
+        port,
         path: uri.path().to_owned(),
         is_protected,
         ca,

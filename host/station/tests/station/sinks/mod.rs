@@ -127,7 +127,13 @@ fn a_way_to_a_sink_that_is_none_is_refused_with_its_line() {
             "name = \"mes\"\npost = \"https://localhost/\"\nproxy = \"p.example:3128\"",
             "write it as http://host:port",
         ),
+        (
+            "name = \"mes\"\npost = \"https://localhost/\"\nproxy = \"http://p.example:99999\"",
+            "write it as http://host:port",
+        ),
         ("name = \"mes\"\nfolder = \"a\"\nproxy = \"http://p.example\"", "proxy says nothing to this sink"),
+        ("name = \"mes\"\npost = \"http://localhost:99999/x\"", "this is no address"),
+        ("name = \"mes\"\nmqtt = \"mqtt://[::1]:65536\"", "this is no address"),
         ("name = \"mes\"\nmqtt = \"mqtt://localhost/a+b\"", "no topic may have"),
         ("name = \"mes\"\nmqtt = \"mqtt://localhost/a/#\"", "no topic may have"),
         ("name = \"mes\"\nmqtt = \"mqtt://localhost/a?b\"", "no topic may have"),
