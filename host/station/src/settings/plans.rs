@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
+use super::read::not_empty;
 use super::{PlanFile, PlantSettings};
 use crate::input_error::Fault;
 use crate::plan::Plan;
@@ -27,6 +28,7 @@ impl<'a> Plans<'a> {
 
     /// The index of this plan among them; it is loaded when it is named first.
     pub(super) fn take(&mut self, text: &Spanned<String>) -> Result<usize, Fault> {
+        not_empty(text)?;
         let (path, expected) = self.path(text)?;
         if let Some(known) = self.named.iter().position(|known| known.path == path) {
             return Ok(known);

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
+use super::read::file;
 use super::text::{GreenText, PlantText};
 use crate::input_error::Fault;
 use crate::published::PublicKey;
@@ -49,8 +50,8 @@ impl PlantSettings {
     pub(super) fn of(folder: &Path, text: &PlantText) -> Result<Self, Fault> {
         let settings = Self {
             url: text.url.get_ref().clone(),
-            password_file: text.password_file.as_ref().map(|name| folder.join(name)),
-            ca: text.ca.as_ref().map(|name| folder.join(name.get_ref())),
+            password_file: text.password_file.as_ref().map(|name| file(folder, name)).transpose()?,
+            ca: text.ca.as_ref().map(|name| file(folder, name)).transpose()?,
             is_green_at_plant: text.green == GreenText::Plant,
             most_unsent: most_unsent(text.most_unsent.as_ref())?,
             most_filled: most_filled(text.most_filled.as_ref())?,

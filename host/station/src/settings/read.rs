@@ -150,6 +150,7 @@ fn address(read: &SettingsText) -> Result<Address, Fault> {
     let WebText { listen, public, hosts } = &read.web;
     let [of_listen, of_public] =
         [listen, public].map(|text| text.as_ref().map_or(0, |text| text.span().start));
+    let of_hosts = hosts.as_ref().map_or(0, |hosts| hosts.span().start);
     let listen = listen.as_ref().map_or(LISTEN, |text| text.get_ref());
     let public = public.as_ref().map(|text| text.get_ref().as_str());
     let names = hosts.as_ref().map_or(&[][..], |hosts| hosts.get_ref());
@@ -157,6 +158,7 @@ fn address(read: &SettingsText) -> Result<Address, Fault> {
         let place = match error {
             AddressError::Listen(_) => of_listen,
             AddressError::Public(_) => of_public,
+            AddressError::Host(_) => of_hosts,
         };
         Fault::input(place, "the address", error)
     })?;
@@ -164,7 +166,7 @@ fn address(read: &SettingsText) -> Result<Address, Fault> {
         let is_open = |public| Address::new(listen, public, &[]).is_ok_and(|address| !address.is_private());
         let place = match hosts {
             _ if is_open(None) => of_listen,
-            Some(hosts) if !is_open(public) => hosts.span().start,
+            Some(_) if !is_open(public) => of_hosts,
             _ => of_public,
         };
         let what = "others can reach these pages, and nobody logs in";
@@ -200,6 +202,11 @@ pub(super) fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
         "" => Err(Fault::wrong(word.span().start, "there is nothing here", "write a name")),
         word => Ok(word.to_owned()),
     }
+}
+
+/// The file or folder that is written so in settings in `folder`.
+pub(super) fn file(folder: &Path, written: &Spanned<String>) -> Result<PathBuf, Fault> {
+    Ok(folder.join(not_empty(written)?))
 }
 
 pub(super) fn seconds(text: Option<&Spanned<f64>>, default: f64) -> Result<Duration, Fault> {

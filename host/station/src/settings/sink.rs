@@ -7,7 +7,7 @@ use axum::http::uri::Authority;
 use toml::Spanned;
 use ureq::{Proxy, ProxyProtocol};
 
-use super::read::is_name;
+use super::read::{file, is_name};
 use super::text::SinkText;
 use crate::export::Format;
 use crate::input_error::Fault;
@@ -92,16 +92,16 @@ impl SinkSettings {
     /// What the settings say, in a file whose folder is `folder`.
     pub(super) fn of(folder: &Path, text: &SinkText) -> Result<Self, Fault> {
         let name = name(&text.name)?;
-        let path = |name: &Option<Spanned<String>>| name.as_ref().map(|name| folder.join(name.get_ref()));
+        let path = |name: &Option<Spanned<String>>| name.as_ref().map(|name| file(folder, name)).transpose();
         let format = text.format.as_ref().map(|format| *format.get_ref());
-        let ca = path(&text.ca);
+        let ca = path(&text.ca)?;
         let (to, used) = match (&text.folder, &text.post, &text.mqtt) {
             (Some(to), None, None) => {
-                let path = folder.join(to.get_ref());
+                let path = file(folder, to)?;
                 (Destination::Folder { path, format: format.unwrap_or_default() }, ["format"].as_slice())
             }
             (None, Some(url), None) => {
-                let (address, token) = (address(url, HTTP, ca)?, path(&text.token_file));
+                let (address, token) = (address(url, HTTP, ca)?, path(&text.token_file)?);
                 let (format, proxy) = (format.unwrap_or_default(), proxy(text.proxy.as_ref(), &address)?);
                 let to = Destination::Post { address, format, token, proxy };
                 (to, ["format", "token_file", "ca", "proxy"].as_slice())
@@ -157,7 +157,7 @@ fn login(folder: &Path, text: &SinkText) -> Result<Option<Login>, Fault> {
     match (&text.user, &text.password_file) {
         (None, None) => Ok(None),
         (Some(user), Some(password)) => {
-            Ok(Some(Login { user: user.get_ref().clone(), password: folder.join(password.get_ref()) }))
+            Ok(Some(Login { user: user.get_ref().clone(), password: file(folder, password)? }))
         }
         (one, other) => {
             let at = one.as_ref().or(other.as_ref()).map_or(0, |text| text.span().start);

@@ -88,7 +88,7 @@ pub(super) struct AccessText {
 #[serde(deny_unknown_fields)]
 pub(super) struct PlantText {
     pub(super) url: Spanned<String>,
-    pub(super) password_file: Option<String>,
+    pub(super) password_file: Option<Spanned<String>>,
     pub(super) ca: Option<Spanned<String>>,
     #[serde(default)]
     pub(super) green: GreenText,

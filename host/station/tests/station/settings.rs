@@ -186,6 +186,7 @@ const WRONG: &[(&str, &str, &str)] = &[
         "db.example/plant\"\nca = \"none.pem\"",
         "station.toml:13: the file of the plant's certificates cannot be used: ",
     ),
+    ("\"plant.password\"", "\"\"", "station.toml:13: there is nothing here; write a name"),
     ("green = \"plant\"", "green = \"blue\"", "station.toml:14: unknown variant `blue`"),
     (
         "most_unsent = 500",
@@ -273,6 +274,17 @@ const WRONG: &[(&str, &str, &str)] = &[
         "[web]\nlisten = \"0.0.0.0:1\"\nhosts = [\"a.example\"]\n[[on-error]]",
         "station.toml:30: others can reach these pages, and nobody logs in",
     ),
+    (
+        "[[on-error]]",
+        "[web]\nhosts = [\"http://localhost:8612\"]\n[[on-error]]",
+        "station.toml:30: the address cannot be used: `http://localhost:8612` is no name by which browsers ask",
+    ),
+    (
+        "[[on-error]]",
+        "[web]\nlisten = \"0.0.0.0:1\"\nhosts = [\"\"]\n[access]\nusers = \"u\"\n[[on-error]]",
+        "station.toml:31: the address cannot be used: `` is no name by which browsers ask",
+    ),
+    ("[\"b.toml\"]", "[\" \"]", "station.toml:25: there is nothing here; write a name"),
     ("deadline = 2.5", "deadline = -1.0", "station.toml:31: -1 s is no such time"),
     (
         "\"a.toml\", \"b.toml\"",

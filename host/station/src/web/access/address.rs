@@ -25,6 +25,11 @@ pub enum AddressError {
         "`{0}` is not where browsers find a station; write it as https://station12.example, without a path"
     )]
     Public(String),
+    /// It is no name.
+    #[error(
+        "`{0}` is no name by which browsers ask for a station; write it as station12:8612, without http:// and without a path"
+    )]
+    Host(String),
 }
 
 impl Address {
@@ -34,13 +39,15 @@ impl Address {
     /// [`AddressError`]
     pub fn new(listen: &str, public: Option<&str>, hosts: &[String]) -> Result<Self, AddressError> {
         let listen: SocketAddr = listen.parse().map_err(|_| AddressError::Listen(listen.to_owned()))?;
+        if let Some(wrong) = hosts.iter().find(|host| !may_be_host(host)) {
+            return Err(AddressError::Host(wrong.clone()));
+        }
         let mut all = hosts.to_vec();
         let mut is_https = false;
         if let Some(public) = public {
             let refused = || AddressError::Public(public.to_owned());
             let (scheme, host) = public.split_once("://").ok_or_else(refused)?;
-            let is_host = |byte: u8| byte.is_ascii_alphanumeric() || b".-:[]".contains(&byte);
-            if !["http", "https"].contains(&scheme) || host.is_empty() || !host.bytes().all(is_host) {
+            if !["http", "https"].contains(&scheme) || !may_be_host(host) {
                 return Err(refused());
             }
             is_https = scheme == "https";
@@ -103,6 +110,12 @@ impl Address {
             .and_then(|rest| rest.strip_prefix("://"))
             .is_some_and(|rest| rest.eq_ignore_ascii_case(host))
     }
+}
+
+/// Whether a header `Host` may have this value.
+fn may_be_host(host: &str) -> bool {
+    let is_of_host = |byte: u8| byte.is_ascii_alphanumeric() || b".-_:[]".contains(&byte);
+    !host.is_empty() && host.bytes().all(is_of_host)
 }
 
 /// The name or address in a value of the header `Host`.

@@ -107,6 +107,13 @@ fn a_key_that_says_nothing_to_a_sink_is_refused_with_its_line() {
             "password_file says nothing to this sink",
         ),
         ("name = \"mes\"\nmqtt = \"mqtt://localhost\"\nformat = \"csv\"", "format says nothing to this sink"),
+        ("name = \"mes\"\nfolder = \" \"", "there is nothing here"),
+        ("name = \"mes\"\npost = \"http://localhost\"\ntoken_file = \"\"", "there is nothing here"),
+        ("name = \"mes\"\nmqtt = \"mqtts://b.example\"\nca = \"\"", "there is nothing here"),
+        (
+            "name = \"mes\"\nmqtt = \"mqtt://localhost\"\nuser = \"me\"\npassword_file = \"\"",
+            "there is nothing here",
+        ),
     ];
     are_refused(folder.path(), &cases);
 }
