@@ -34,15 +34,17 @@ impl TablesText {
             phase: over.phase.or(self.phase),
             rows: over.rows.or(self.rows),
             kernel: over.kernel.clone().or_else(|| self.kernel.clone()),
+            instead: over.place().or(self.instead),
         }
     }
 
-    /// Where in the plan these tables are, for errors; `otherwise` if they are the built-in ones.
-    fn place(&self, otherwise: usize) -> usize {
+    /// Where in the plan these tables are, for errors; none if they are the built-in ones. What a step or a variant says instead
+    /// comes first, as the plan's own may be right.
+    fn place(&self) -> Option<usize> {
         let named = self.file.as_ref().or(self.lens.as_ref()).map(|name| name.span().start);
         let radius = || self.radius.as_ref().map(|radius| radius.span().start);
         let size = || self.width.as_ref().or(self.height.as_ref()).map(|size| size.span().start);
-        named.or_else(radius).or_else(size).unwrap_or(otherwise)
+        self.instead.or(named).or_else(radius).or_else(size)
     }
 
     /// Chooses tables, kernel and lens. `step` is the place in the plan of the step that needs them.
@@ -50,7 +52,7 @@ impl TablesText {
         self.check()?;
         let kernel = self.kernel.as_ref().map(|name| kernel(name, files)).transpose()?;
         let kernel = kernel.as_deref().map(Path::as_os_str);
-        let at = self.place(step);
+        let at = self.place().unwrap_or(step);
         let chosen = match (&self.file, &self.lens) {
             (Some(name), _) => self.of_file(&files.find(name)?, kernel),
             (None, Some(name)) => self.of_lens(&files.find(name)?, kernel),

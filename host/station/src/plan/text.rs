@@ -80,6 +80,9 @@ pub(super) struct TablesText {
     pub(super) phase: Option<Phase>,
     pub(super) rows: Option<RowsText>,
     pub(super) kernel: Option<Spanned<String>>,
+    /// Where it says what replaces the plan's own, if it does.
+    #[serde(skip)]
+    pub(super) instead: Option<usize>,
 }
 
 /// How row factors are computed.

@@ -45,6 +45,25 @@ fn tables_of_a_step_stand_in_the_place_of_the_plan_s_key_by_key() {
     assert!(other.contains("the file other.yml cannot be read"), "{other}");
 }
 
+/// The plan's own tables are in another line, and right.
+#[test]
+fn tables_that_are_wrong_for_a_step_or_a_variant_are_told_at_their_own_line() {
+    let of_plan = "radius = 20.0\nwidth = 64\nheight = 16";
+    for own in ["width = 63", "height = 4000", "radius = -1.0", "kernel = \"keys\"\nwidth = 63"] {
+        let text = of_tables(of_plan, own);
+        let key = own.lines().last().unwrap();
+        let line = text.lines().position(|line| line == key).unwrap() + 1;
+        let said = load(&text).map(drop).unwrap_err();
+        assert!(
+            said.starts_with(&format!("plan.toml:{line}: what the plan says of tables")),
+            "{own}: {said}"
+        );
+    }
+    let of_variant = WHOLE.replace("{ radius = 30.0 }", "{ height = 4000 }");
+    let said = load(&of_variant).map(drop).unwrap_err();
+    assert!(said.starts_with("plan.toml:43: what the plan says of tables"), "{said}");
+}
+
 /// The phase decides which samples of a colour picture's row are red.
 #[test]
 fn a_picture_in_colour_is_seen_through_the_phase_of_the_plan() {
