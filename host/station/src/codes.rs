@@ -294,6 +294,7 @@ codes::codes! {
         Armed [lane] => "lane-armed",
         Starts [lane] => "lane-starts",
         ToldToEnd [lane] => "lane-told-to-end",
+        Forgotten [lane, serial] => "serial-forgotten",
         TakenOut [lane] => "lane-taken-out",
         PutBack [lane] => "lane-put-back",
         Tested [serial, lane] => "serial-tested",

@@ -169,6 +169,8 @@ pub enum Saying {
     Starts { lane: String },
     #[error("ending the run in lane {lane}")]
     ToldToEnd { lane: String },
+    #[error("lane {lane} has forgotten {serial}; scan its label again")]
+    Forgotten { lane: String, serial: String },
     #[error("lane {lane} is out of service")]
     TakenOut { lane: String },
     #[error("lane {lane} is in service")]

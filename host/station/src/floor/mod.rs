@@ -237,13 +237,15 @@ impl Floor {
     /// [`ScanError::Lane`] when it cannot be done now.
     pub fn act(&mut self, lane: usize, act: Act, operator: &str) -> Result<ScanOutcome, ScanError> {
         let name = self.name(lane).to_owned();
+        let waiting = self.lane(lane)?.serial().unwrap_or_default().to_owned();
+        let effect = self.lane(lane)?.take(act.event(operator))?;
         let said = match act {
             Act::Start => Saying::Starts { lane: name },
+            Act::Abort if effect.is_none() => Saying::Forgotten { lane: name, serial: waiting },
             Act::Abort => Saying::ToldToEnd { lane: name },
             Act::Out => Saying::TakenOut { lane: name },
             Act::In => Saying::PutBack { lane: name },
         };
-        let effect = self.lane(lane)?.take(act.event(operator))?;
         Ok(ScanOutcome { lane: Some(lane), effect, said: said.into() })
     }
 

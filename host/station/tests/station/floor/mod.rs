@@ -221,8 +221,9 @@ fn a_run_is_stopped_and_a_waiting_number_forgotten() {
     let mut waits = self::floor(&[BUTTON], false);
     plug(&mut waits, 0);
     waits.scan(&serial(0), WEBER, at(0)).unwrap();
-    waits.scan("HR:ABORT", WEBER, at(0)).unwrap();
-    assert_eq!(words(&waits), [Word::Ready]);
+    let forgotten = waits.scan("HR:ABORT", WEBER, at(0)).unwrap().said;
+    let said = format!("lane 1 has forgotten {}; scan its label again", serial(0));
+    assert_eq!((words(&waits), forgotten.to_string()), (vec![Word::Ready], said));
 }
 
 #[test]
