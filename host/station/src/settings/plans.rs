@@ -26,7 +26,8 @@ impl<'a> Plans<'a> {
         Self { folder, kept: KeptPlans::of(data), trusted, named: Vec::new() }
     }
 
-    /// The index of this plan among them; it is loaded when it is named first.
+    /// The index of this plan among them; it is loaded when it is named first. A file may have several names, and a copy of it
+    /// would take the same serial numbers: either is the same plan.
     pub(super) fn take(&mut self, text: &Spanned<String>) -> Result<usize, Fault> {
         not_empty(text)?;
         let (path, expected) = self.path(text)?;
@@ -39,6 +40,9 @@ impl<'a> Plans<'a> {
         if expected.is_some_and(|expected| expected != plan.sha256) {
             let what = format!("the plan {} is not as it was published", text.get_ref());
             return Err(Fault::wrong(text.span().start, what, FETCH));
+        }
+        if let Some(known) = self.named.iter().position(|known| known.plan.sha256 == plan.sha256) {
+            return Ok(known);
         }
         self.named.push(PlanFile { path, plan });
         Ok(self.named.len() - 1)

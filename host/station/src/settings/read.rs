@@ -274,8 +274,12 @@ fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneS
     let mut of_lane = Vec::new();
     for file in text.plans.get_ref() {
         let plan = plans.take(file)?;
-        if of_lane.contains(&plan) {
-            let what = format!("lane {name} has the plan {} twice", file.get_ref());
+        let earlier =
+            of_lane.iter().position(|known| *known == plan).and_then(|at| text.plans.get_ref().get(at));
+        if let Some(earlier) = earlier.map(Spanned::get_ref) {
+            let first =
+                if earlier == file.get_ref() { String::new() } else { format!(", first as {earlier}") };
+            let what = format!("lane {name} has the plan {} twice{first}", file.get_ref());
             return Err(Fault::wrong(file.span().start, what, "leave one of them out"));
         }
         of_lane.push(plan);

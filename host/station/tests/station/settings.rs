@@ -1,5 +1,7 @@
 //! Settings: what is accepted, and what is refused with its line and a remedy.
 
+mod plans;
+
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::process::Command;
@@ -142,20 +144,6 @@ fn what_is_left_out_is_as_the_pages_say() {
     assert_eq!(settings.sinks.iter().map(port).collect::<Vec<_>>(), [8883, 1883]);
 }
 
-/// `plan fetch` fetches the plans by which lanes and jobs are judged, each once.
-#[test]
-fn a_plan_of_the_plant_is_fetched_for_lanes_and_for_jobs() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("station.toml");
-    let text = REST.replace("[\"b.toml\"]", "[\"plant:CAM-T/final\", \"b.toml\"]");
-    let text = text.replace("[\"a.toml\"]", "[\"plant:CAM-T/jobs\", \"plant:CAM-T/final\"]");
-    fs::write(&path, text).unwrap();
-    let published = Settings::plans_of_plant(&path).unwrap();
-    let names: Vec<_> = published.plans.iter().map(|plan| (&plan.product[..], &plan.plan[..])).collect();
-    assert_eq!(names, [("CAM-T", "final"), ("CAM-T", "jobs")]);
-    assert_eq!(published.data, folder.path().join("data"));
-}
-
 /// A change of [`WHOLE`], and how the error begins, which names the line.
 const WRONG: &[(&str, &str, &str)] = &[
     ("schema = 1", "schema = 9", "station.toml:1: this program reads settings of schema 1, not 9; take the"),
@@ -289,7 +277,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "\"a.toml\", \"b.toml\"",
         "\"a.toml\", \"b.toml\", \"./a.toml\"",
-        "station.toml:20: lane 1 has the plan ./a.toml twice; leave one of them out",
+        "station.toml:20: lane 1 has the plan ./a.toml twice, first as a.toml; leave one of them out",
     ),
     ("usb:1-2.3", "tcp:127.0.0.1:99999", "station.toml:19: the board cannot be used: "),
     ("mock,serial=1", "mock,serial=1,fault=nope", "station.toml:24: the board cannot be used: "),
