@@ -96,6 +96,8 @@ fn place(board: &Target, devices: &Path) -> Option<PathBuf> {
             let chip = chips(devices).into_iter().find(|chip| chip.serial.as_deref() == Some(address));
             chip.map(|chip| chip.place.into())
         }
+        // Hosts are the same in either case (RFC 4343).
+        "tcp" => Some(address.to_ascii_lowercase().into()),
         _ => None,
     };
     Some(found.unwrap_or_else(|| address.into()))
@@ -185,6 +187,10 @@ mod tests {
             is_same(&one, &other, devices.path(), devices.path())
         };
         assert!(is_same("usb:1-2.3", "usb:FT3XYZ") && is_same("tcp:bench:1", "tcp:bench:1,baud=9600"));
+        assert!(
+            is_same("tcp:Bench:1", "tcp:bench:1,baud=9600"),
+            "no host differs from another in its case alone"
+        );
         assert!(!is_same("usb:1-2.3", "usb:2-1") && !is_same("tcp:bench:1", "tcp:bench:2"));
         let port = devices.path().join("port");
         let target = format!("serial:{}", port.display());
