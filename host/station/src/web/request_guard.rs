@@ -6,7 +6,7 @@ use std::time::Duration;
 use axum::body::{self, Body, Bytes};
 use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderName};
-use axum::http::{HeaderMap, HeaderValue, StatusCode};
+use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Redirect, Response};
 use tokio::time;
@@ -82,6 +82,10 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
 /// Goes around a route: who asks, and whether they may.
 pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next: Next) -> Response {
     let Guarded { app, who, is_act } = guarded;
+    // A browser asks for it whose address bar still has an act's address.
+    if is_act && [Method::GET, Method::HEAD].contains(request.method()) {
+        return Redirect::to("/").into_response();
+    }
     let visit = match bearer(request.headers()).filter(|_| !app.access().asks_nobody()) {
         None => app.visit(request.headers(), is_act).await.map_err(troubled),
         Some(token) => {

@@ -122,6 +122,26 @@ fn a_page_asked_for_by_a_stranger_leads_to_the_login() {
     assert_eq!((answer.status, answer.headers["location"].as_str()), (303, "/login"));
 }
 
+/// A page that an act has answered is asked for again by its address, as by Enter in the address bar.
+#[test]
+fn whoever_looks_where_acts_are_sent_is_led_to_the_first_page() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let operator = serving.operator();
+    let looks: Vec<_> = ROWS.iter().filter(|row| row.0 == "GET").map(|row| row.3).collect();
+    for row in ROWS.iter().filter(|row| row.0 == "POST" && !looks.contains(&row.3)) {
+        for method in ["GET", "HEAD"] {
+            let answer = Request { method: method.to_owned(), ..operator.get(row.3) }.send();
+            let led = (answer.status, answer.header("location"));
+            assert_eq!(led, (303, Some("/")), "{method} {}", row.3);
+        }
+        let put = Request { method: "PUT".to_owned(), ..operator.get(row.3) };
+        assert_eq!(status(&put), 403, "PUT {}", row.3);
+    }
+    let acted = "act IN ('abort', 'lane', 'scan', 'waive', 'rebind')";
+    assert_eq!(station.query(&format!("SELECT count(*) FROM audit WHERE {acted}")), ["0"]);
+}
+
 /// A machine with a token sees every page that an operator sees, and may change nothing; an invalid token opens nothing.
 #[test]
 fn a_token_reads_every_page_and_does_nothing() {
