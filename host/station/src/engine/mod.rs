@@ -19,6 +19,7 @@ mod news;
 mod unsent;
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -79,6 +80,8 @@ pub struct Engine {
     figures: Arc<Counter>,
     store: SharedStore,
     thread: Mutex<Option<JoinHandle<()>>>,
+    /// Whether it was told to end.
+    is_ending: AtomicBool,
 }
 
 /// What everybody may see: the lanes as they are, and who listens to changes.
@@ -115,7 +118,8 @@ impl Engine {
         let at_work = AtWork::new(floor, Arc::new(shared), Arc::clone(&live));
         let thread =
             thread::Builder::new().name("engine".to_owned()).spawn(move || work(at_work, &received))?;
-        Ok(Self { inbox, live, figures, store, thread: Mutex::new(Some(thread)) })
+        let (thread, is_ending) = (Mutex::new(Some(thread)), AtomicBool::new(false));
+        Ok(Self { inbox, live, figures, store, thread, is_ending })
     }
 
     /// Takes what `operator` scanned. What becomes of it is reported as news with the same `number`.
@@ -184,6 +188,12 @@ impl Engine {
         thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
+    /// Whether it was told to end, so that it answers nothing more.
+    #[must_use]
+    pub(crate) fn is_ending(&self) -> bool {
+        self.is_ending.load(Ordering::Acquire)
+    }
+
     /// The store, for what is neither a scan nor a run.
     #[must_use]
     pub fn store(&self) -> SharedStore {
@@ -194,6 +204,7 @@ impl Engine {
     /// without it they come to their own end.
     pub fn close(&self, by: Option<StoppedBy>) {
         let Some(thread) = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+        self.is_ending.store(true, Ordering::Release);
         self.put(Input::Close(by));
         if thread.join().is_err() {
             tracing::error!("the engine ended early; look at what it said before");
@@ -203,7 +214,7 @@ impl Engine {
     }
 
     fn put(&self, input: Input) {
-        if self.inbox.send(input).is_err() {
+        if self.inbox.send(input).is_err() && !self.is_ending() {
             tracing::error!("the engine has ended; start the station again");
         }
     }

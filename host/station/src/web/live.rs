@@ -215,6 +215,8 @@ fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
         match heard.recv_timeout(BEAT.saturating_sub(beat.elapsed())) {
             Ok(news) => live.hear(news),
             Err(RecvTimeoutError::Timeout) => {}
+            // There is no more news. Whoever still waits for an answer is told by the end of the connection.
+            Err(RecvTimeoutError::Disconnected) if engine.is_ending() => return,
             // This thread was too slow for the engine. It listens anew, which begins with all lanes.
             Err(RecvTimeoutError::Disconnected) => {
                 heard = engine.listen();

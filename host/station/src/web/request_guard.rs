@@ -193,6 +193,9 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
     if !visit.may(who) {
         return Err(Box::new(Trouble::barred(visit).into_response()));
     }
+    if app.is_ending() {
+        return Err(refused(visit, StatusCode::SERVICE_UNAVAILABLE, visit.say("trouble.ending")));
+    }
     let unmarked = || refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.mark"));
     if visit.is_new {
         return Err(unmarked());
@@ -260,5 +263,61 @@ impl App {
         let session = sent.or_else(|| access.begin(None).ok()).unwrap_or_default();
         let (csrf, can_log_in) = (access.form_mark(&session), access.has_people());
         Ok(Visit { csrf, user, untold, session, is_new, can_log_in, ..stranger })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::sync::Arc;
+
+    use tokio::runtime::Builder;
+
+    use super::*;
+    use crate::engine::Engine;
+    use crate::settings::Settings;
+    use crate::store::{Folder, Store};
+    use crate::web::access::Access;
+
+    /// A station with one lane, its settings in `folder`.
+    fn station(folder: &std::path::Path) -> (App, Arc<Engine>) {
+        let path = folder.join("station.toml");
+        let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
+        fs::write(&path, format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{lane}")).unwrap();
+        fs::write(folder.join("plan.toml"), include_str!("../../tests/station/quick.toml")).unwrap();
+        let settings = Settings::load(&path).unwrap();
+        let store = Store::open(&Folder::new(&settings.data)).unwrap();
+        let engine = Arc::new(Engine::start(settings.clone(), store, "lane".into()).unwrap());
+        let weber = User { name: "weber".to_owned(), who: Who::Operator };
+        let access = Access::of(&settings, weber).unwrap();
+        (App::new(settings, Arc::clone(&engine), access, Vec::new()).unwrap(), engine)
+    }
+
+    /// A request of the station's own page.
+    fn own(app: &App, session: &str) -> Request {
+        let here = "127.0.0.1:8612";
+        let request =
+            Request::builder().header(header::HOST, here).header(header::ORIGIN, format!("http://{here}"));
+        let cookie = format!("{}={session}", app.access().cookie_name());
+        let mark = format!("{MARK}={}", app.access().form_mark(session));
+        request.header(header::COOKIE, cookie).body(Body::from(mark)).unwrap()
+    }
+
+    /// As between SIGTERM and the end of the pages, however long runs and sinks then take.
+    #[test]
+    fn no_act_begins_while_the_station_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let (app, engine) = station(folder.path());
+        let session = app.access().begin(None).unwrap();
+        let asked = || async {
+            let request = own(&app, &session);
+            let visit = app.visit(request.headers(), true).await.unwrap();
+            let refused = act(&app, &visit, Who::Operator, request).await.err();
+            refused.map(|refused| refused.status())
+        };
+        let runtime = Builder::new_current_thread().enable_all().build().unwrap();
+        assert_eq!(runtime.block_on(asked()), None, "the control");
+        engine.close(None);
+        assert_eq!(runtime.block_on(asked()), Some(StatusCode::SERVICE_UNAVAILABLE));
     }
 }

@@ -101,6 +101,11 @@ impl App {
         }
     }
 
+    /// Whether its lanes were told to end, and take nothing more.
+    pub(super) fn is_ending(&self) -> bool {
+        matches!(&self.0.source, Source::Station(lanes) if lanes.engine.is_ending())
+    }
+
     /// Its name.
     pub(super) fn station(&self) -> &str {
         &self.0.settings.name
