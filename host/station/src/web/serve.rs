@@ -46,6 +46,17 @@ pub enum ServeError {
         /// The system's reason.
         source: io::Error,
     },
+    /// No network of this computer has the address.
+    #[error(
+        "this computer has no address {}; write one of its own as `listen` in the settings, or 0.0.0.0 for all of them",
+        address.ip()
+    )]
+    Elsewhere {
+        /// The address.
+        address: SocketAddr,
+        /// The system's reason.
+        source: io::Error,
+    },
     /// The system has no thread or no timer for it.
     #[error("the system has no room for the station's pages; end other programs")]
     Room(#[source] io::Error),
@@ -62,9 +73,12 @@ impl Server {
     /// Listens on `address`; with port 0 the system chooses one.
     ///
     /// # Errors
-    /// [`ServeError::Address`]
+    /// [`ServeError::Address`] and [`ServeError::Elsewhere`]
     pub fn listen(address: SocketAddr) -> Result<TcpListener, ServeError> {
-        TcpListener::bind(address).map_err(|source| ServeError::Address { address, source })
+        TcpListener::bind(address).map_err(|source| match source.kind() {
+            io::ErrorKind::AddrNotAvailable => ServeError::Elsewhere { address, source },
+            _ => ServeError::Address { address, source },
+        })
     }
 
     /// Serves the pages of `app`.
@@ -148,5 +162,20 @@ async fn connection(stream: TcpStream, router: Router, slot: Arc<Slot>) {
         Either::Left((Err(error), _)) => tracing::debug!("a connection ended: {error}"),
         Either::Left((Ok(()), _)) => {}
         Either::Right(_) => tracing::debug!("a connection gave way to another one"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 192.0.2.0/24 is for documentation alone, so no computer has it (RFC 5737).
+    #[test]
+    fn an_address_of_another_computer_is_not_said_to_be_in_use() {
+        let error = Server::listen("192.0.2.1:8612".parse().unwrap()).unwrap_err().to_string();
+        assert!(error.starts_with("this computer has no address 192.0.2.1; "), "{error}");
+        let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+        let error = Server::listen(taken.local_addr().unwrap()).unwrap_err().to_string();
+        assert!(error.contains("; end what is there, or take another port"), "{error}");
     }
 }
