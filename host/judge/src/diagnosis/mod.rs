@@ -20,29 +20,17 @@ mod ranking;
 mod read_back;
 mod witnesses;
 
-use halfrow_model::{Kernel, TableSet};
-
 use crate::result::{Evidence, FrameReport, Suspect};
+use crate::tables::Generation;
 use witnesses::Witnesses;
 
 pub use read_back::read_back;
-
-/// Tables and kernel that a frame may have been corrected with.
-#[derive(Clone, Copy, Debug)]
-pub struct Uploaded<'a> {
-    /// Their generation.
-    pub generation: u8,
-    /// Row factors or a grid.
-    pub tables: &'a TableSet,
-    /// The kernel.
-    pub kernel: &'a Kernel,
-}
 
 /// Everything that is known about a board that computes wrongly.
 #[derive(Clone, Copy, Debug)]
 pub struct Case<'a> {
     /// All that was uploaded, in order.
-    pub uploaded: &'a [Uploaded<'a>],
+    pub uploaded: &'a [Generation],
     /// M, the samples of line memory.
     pub ring: usize,
     /// Every frame, in streaming order.
@@ -53,8 +41,8 @@ pub struct Case<'a> {
 
 impl<'a> Case<'a> {
     /// What was uploaded under this generation last.
-    fn uploaded_as(&self, generation: u8) -> Option<Uploaded<'a>> {
-        self.uploaded.iter().rfind(|uploaded| uploaded.generation == generation).copied()
+    fn uploaded_as(&self, generation: u8) -> Option<&'a Generation> {
+        self.uploaded.iter().rfind(|uploaded| uploaded.number == generation)
     }
 }
 

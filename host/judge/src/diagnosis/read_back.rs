@@ -4,10 +4,10 @@ mod lines;
 
 use halfrow_model::{RowFactor, WEIGHT_NAMES};
 
-use super::Uploaded;
 use crate::board::Table;
 use crate::compare::bits_in;
 use crate::result::{Account, Defect, Memory, Suspect};
+use crate::tables::Generation;
 
 /// A table as words: row factors, grid entries, or the weights of one node after the other.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +32,8 @@ struct WrongWord {
 /// A single wrong entry is named with the bits that differ. Several are named by the line that would cause them, if a single line
 /// would, otherwise by their number and the first of them.
 #[must_use]
-pub fn read_back(uploaded: &Uploaded<'_>, table: Table, found: &[u8]) -> Vec<Suspect> {
-    let Uploaded { tables, kernel, .. } = uploaded;
+pub fn read_back(uploaded: &Generation, table: Table, found: &[u8]) -> Vec<Suspect> {
+    let Generation { tables, kernel, .. } = uploaded;
     let bytes = match table {
         Table::RowFactors | Table::Grid => tables.to_bytes(),
         Table::Kernel => kernel.to_bytes(),

@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 
 use halfrow_model::{Frame, Geometry};
 
+use super::Case;
 use super::datapath::{RowTables, Stretch};
-use super::{Case, Uploaded};
 use crate::result::Evidence;
+use crate::tables::Generation;
 
 /// 2^64 divided by the golden ratio. Its multiples modulo 2^64 are spread evenly.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -22,7 +23,7 @@ pub(super) struct Witness<'a> {
     /// The row of the frame.
     pub(super) row: usize,
     /// The tables and kernel that its frame must be made with.
-    pub(super) uploaded: Uploaded<'a>,
+    pub(super) uploaded: &'a Generation,
     /// The whole input frame.
     pub(super) input: &'a Frame,
     /// The row that went in after it, of this frame or the next, if it was kept.
@@ -54,7 +55,7 @@ impl<'a> Witness<'a> {
 
     /// What the row must be made with.
     pub(super) fn tables(&self) -> RowTables<'a> {
-        let Uploaded { tables, kernel, .. } = self.uploaded;
+        let Generation { tables, kernel, .. } = self.uploaded;
         let geometry = tables.geometry();
         let stretch = Stretch::of(tables, geometry, self.row).unwrap_or(Stretch::Factor(0));
         RowTables { geometry, centre2: geometry.centre2(), stretch, kernel }
@@ -129,7 +130,7 @@ impl<'a> Witnesses<'a> {
     }
 
     /// What was uploaded for any of the kept frames, each generation once.
-    pub(super) fn generations(&self) -> Vec<Uploaded<'a>> {
+    pub(super) fn generations(&self) -> Vec<&'a Generation> {
         let used: BTreeSet<_> = self
             .case
             .evidence

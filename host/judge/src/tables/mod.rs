@@ -18,6 +18,7 @@
 
 mod error;
 mod format;
+mod generation;
 pub mod json;
 mod layout;
 pub mod mem;
@@ -26,6 +27,7 @@ mod place;
 
 pub use error::{ContentError, MemError, TableFileError, WrongDatapath};
 pub use format::{TableFormat, UnknownTableFormat};
+pub use generation::Generation;
 pub use json::{KernelFile, TableFile};
 pub use place::Place;
 

@@ -1,9 +1,10 @@
 //! Frames that are altered by hand, for defects that the mock does not have.
 
 use halfrow::result::Suspect;
+use halfrow::tables::Generation;
 use halfrow_model::{Frame, Kernel, RowFactor, TableSet, correct, correct_row, source};
 
-use crate::bench::{Bench, CaseInput, Generation, WHITE, fault, narrow, off_centre, wide};
+use crate::bench::{Bench, CaseInput, WHITE, fault, narrow, off_centre, wide};
 
 /// The suspects for a board that gives `found`, frame by frame.
 fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {

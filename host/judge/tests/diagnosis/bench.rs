@@ -2,21 +2,15 @@
 //! timings.
 
 use halfrow::compare::Comparison;
-use halfrow::diagnosis::{Case, Uploaded, diagnose};
+use halfrow::diagnosis::{Case, diagnose};
 use halfrow::result::{Evidence, FrameReport, FrameTiming, MissingRows, Suspect};
+use halfrow::tables::Generation;
 use halfrow_mock::{
     BoardFault, Depth, GridShape, Node, Options, Player, RowIn, Settings, Tables, board_fault,
 };
 use halfrow_model::{BitDepth, Camera, Equidistant, Frame, Geometry, Interpolant, Kernel, TableSet, correct};
 
 use crate::scenes::{Scene, scene};
-
-/// Tables and kernel that are committed as one generation.
-pub(crate) struct Generation {
-    pub(crate) number: u8,
-    pub(crate) tables: TableSet,
-    pub(crate) kernel: Kernel,
-}
 
 /// What all runs of a test share.
 pub(crate) struct Bench {
@@ -92,13 +86,8 @@ impl Bench {
 
     /// The suspects that the diagnosis names for what was seen.
     pub(crate) fn judge(&self, seen: &CaseInput) -> Vec<Suspect> {
-        let uploaded = self.generations.each_ref().map(|generation| Uploaded {
-            generation: generation.number,
-            tables: &generation.tables,
-            kernel: &generation.kernel,
-        });
         diagnose(&Case {
-            uploaded: &uploaded,
+            uploaded: &self.generations,
             ring: self.ring.into(),
             frames: &seen.frames,
             evidence: &seen.evidence,

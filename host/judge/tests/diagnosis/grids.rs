@@ -2,9 +2,10 @@
 //! grid row and node.
 
 use halfrow::result::Suspect;
+use halfrow::tables::Generation;
 use halfrow_model::{BitDepth, Interpolant, Kernel, TableSet, correct};
 
-use crate::bench::{Bench, CaseInput, Generation, assert_named, fault, grid, is_told, off_centre_grid};
+use crate::bench::{Bench, CaseInput, assert_named, fault, grid, is_told, off_centre_grid};
 use crate::scenes::Random;
 
 /// Grid rows of [`grid`], and its columns, including the one of the offsets.

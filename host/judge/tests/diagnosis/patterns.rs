@@ -1,9 +1,10 @@
 //! Faults of lines, and of the kernel's switch, that the mock does not have.
 
 use halfrow::result::Suspect;
+use halfrow::tables::Generation;
 use halfrow_model::{Frame, correct};
 
-use crate::bench::{Bench, CaseInput, Generation, narrow, wide};
+use crate::bench::{Bench, CaseInput, narrow, wide};
 
 /// The suspects for a board that gives `found` of the index of each frame, of what went in and of what should come out.
 fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {

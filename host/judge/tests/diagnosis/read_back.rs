@@ -1,8 +1,9 @@
 //! Tables that read back wrong.
 
 use halfrow::board::Table;
-use halfrow::diagnosis::{Uploaded, read_back};
+use halfrow::diagnosis::read_back;
 use halfrow::result::{Defect, Suspect};
+use halfrow::tables::Generation;
 use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, TableSet};
 
 use crate::bench::grid;
@@ -14,7 +15,7 @@ fn factors() -> Vec<u32> {
 /// The suspects for `found`, read back from `table` of a board with `tables` and Hermite's kernel.
 fn read(tables: &TableSet, table: Table, found: &[u8]) -> Vec<Suspect> {
     let kernel = Kernel::from(Interpolant::Hermite);
-    read_back(&Uploaded { generation: 2, tables, kernel: &kernel }, table, found)
+    read_back(&Generation { number: 2, tables: tables.clone(), kernel }, table, found)
 }
 
 fn bytes(entries: &[u32]) -> Vec<u8> {

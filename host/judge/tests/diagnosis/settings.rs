@@ -1,9 +1,10 @@
 //! Boards that ignore a setting.
 
 use halfrow::result::Suspect;
+use halfrow::tables::Generation;
 use halfrow_model::{BitDepth, Frame, Geometry, correct};
 
-use crate::bench::{Bench, CaseInput, Generation, off_centre, off_centre_grid};
+use crate::bench::{Bench, CaseInput, off_centre, off_centre_grid};
 
 /// The benches with 8 bits and a centre of their own, and a decoy whose centre is the middle.
 fn benches() -> [Bench; 2] {

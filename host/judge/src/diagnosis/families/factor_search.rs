@@ -8,11 +8,11 @@ use halfrow_model::{RowFactor, source_by_entry};
 use super::first_where;
 use super::row_factor::with_entry;
 use super::table_word::{Word, changed};
-use crate::diagnosis::Uploaded;
 use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
+use crate::tables::Generation;
 
 /// Outputs that may be simulated for one row before the search is given up.
 const BUDGET: usize = 1_000_000;
@@ -51,7 +51,7 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>
     let read: Vec<Word> = found.iter().filter_map(entry).collect();
     let ring = witnesses.case.ring;
     Some(Hypothesis::new(defect, move |witness| {
-        let read = changed(&read, &witness.uploaded).filter(|_| witness.row == row);
+        let read = changed(&read, witness.uploaded).filter(|_| witness.row == row);
         read.map(|entry| with_entry(witness, entry, ring))
     }))
 }
@@ -59,11 +59,10 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>
 /// The row in the frames made with these tables, those that differ most first; none if it differs in none.
 fn seen<'w, 'a>(
     witnesses: &'w Witnesses<'a>,
-    uploaded: &Uploaded<'_>,
+    uploaded: &Generation,
     row: usize,
 ) -> Option<Vec<&'w Witness<'a>>> {
-    let is_seen =
-        |witness: &&Witness<'_>| witness.row == row && witness.uploaded.generation == uploaded.generation;
+    let is_seen = |witness: &&Witness<'_>| witness.row == row && witness.uploaded.number == uploaded.number;
     let mut seen: Vec<_> = witnesses.sample(usize::MAX).filter(is_seen).collect();
     seen.sort_by_key(|witness| Reverse(witness.differences));
     seen.truncate(FRAMES);
@@ -74,7 +73,7 @@ fn search(seen: &[&Witness<'_>], budget: &mut usize) -> Option<Found> {
     let first = seen.first()?;
     let uploaded = first.uploaded.tables.row_factor(first.row)?.get();
     let factors = matching_factors(seen, budget).filter(|factors| !factors.is_empty())?;
-    Some(Found { generation: first.uploaded.generation, uploaded, factors })
+    Some(Found { generation: first.uploaded.number, uploaded, factors })
 }
 
 impl Found {

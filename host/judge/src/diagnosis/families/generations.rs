@@ -36,7 +36,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 
 /// What the row was made with, if that can be told and is not what it should be made with.
 fn explain(case: &Case<'_>, blank: &Kernel, row: &Witness<'_>) -> Option<MadeWith> {
-    candidates(case, row.uploaded.generation).into_iter().find(|made| {
+    candidates(case, row.uploaded.number).into_iter().find(|made| {
         let tables = tables(*made, case, blank, row);
         row.differences > 0 && tables.is_some_and(|tables| tables.corrected(row.samples()) == row.found)
     })
@@ -44,7 +44,7 @@ fn explain(case: &Case<'_>, blank: &Kernel, row: &Witness<'_>) -> Option<MadeWit
 
 /// Everything that rows of generation `own` may wrongly be made with, combinations of a single generation first.
 fn candidates(case: &Case<'_>, own: u8) -> Vec<MadeWith> {
-    let mut sources: Vec<_> = case.uploaded.iter().rev().map(|uploaded| Some(uploaded.generation)).collect();
+    let mut sources: Vec<_> = case.uploaded.iter().rev().map(|uploaded| Some(uploaded.number)).collect();
     sources.push(None);
     let pairs = |factors: &Option<u8>| {
         sources.iter().map(|&kernel| MadeWith { factors: *factors, kernel }).collect::<Vec<_>>()
@@ -62,11 +62,11 @@ fn tables<'b>(
     row: &Witness<'b>,
 ) -> Option<RowTables<'b>> {
     let stretch = match made.factors {
-        Some(generation) => Stretch::of(case.uploaded_as(generation)?.tables, row.geometry(), row.row)?,
+        Some(generation) => Stretch::of(&case.uploaded_as(generation)?.tables, row.geometry(), row.row)?,
         None => Stretch::Factor(RowFactor::ONE.get()),
     };
     let kernel = match made.kernel {
-        Some(generation) => case.uploaded_as(generation)?.kernel,
+        Some(generation) => &case.uploaded_as(generation)?.kernel,
         None => blank,
     };
     Some(RowTables { stretch, kernel, ..row.tables() })

@@ -6,10 +6,10 @@ use halfrow_model::{RowFactor, TableSet};
 
 use super::table_word::{Word, changed, inversions, reading};
 use super::{with_grid, with_grids};
-use crate::diagnosis::Uploaded;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
+use crate::tables::Generation;
 
 /// How many rows a bit is tried on before it is simulated as a whole, and how many samples of each.
 const ROWS: usize = 6;
@@ -76,7 +76,7 @@ impl EntryBit {
 
     /// Whether inverting the bit predicts most of a few differing samples of the row, as far as they can be predicted.
     fn gives_most(self, row: &Witness<'_>, ring: usize) -> bool {
-        let own = row.uploaded.tables;
+        let own = &row.uploaded.tables;
         let grid = self.word(own).and_then(|word| self.replaced(own, word ^ 1 << self.bit));
         let Some(tables) = grid.and_then(|grid| with_grid(row, &grid)) else { return false };
         let foretold = tables.foretold(ring);
@@ -90,7 +90,7 @@ impl EntryBit {
 
     fn hypotheses<'a>(self, witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         let generations = witnesses.generations();
-        let word = |uploaded: &Uploaded<'_>| Some((uploaded.generation, self.word(uploaded.tables)?));
+        let word = |uploaded: &&Generation| Some((uploaded.number, self.word(&uploaded.tables)?));
         let words: Vec<Word> = generations.iter().filter_map(word).collect();
         let broken = |read: Vec<Word>| self.hypothesis(&generations, &words, &read, witnesses.case.ring);
         inversions(&words, self.bit).into_iter().map(broken).collect()
@@ -99,13 +99,13 @@ impl EntryBit {
     /// The defect that makes the board read `read` instead of `words`.
     fn hypothesis<'a>(
         self,
-        generations: &[Uploaded<'_>],
+        generations: &[&Generation],
         words: &[Word],
         read: &[Word],
         ring: usize,
     ) -> Hypothesis<'a> {
-        let grid = |uploaded: &Uploaded<'_>| {
-            Some((uploaded.generation, self.replaced(uploaded.tables, changed(read, uploaded)?)?))
+        let grid = |uploaded: &&Generation| {
+            Some((uploaded.number, self.replaced(&uploaded.tables, changed(read, uploaded)?)?))
         };
         let grids: BTreeMap<u8, TableSet> = generations.iter().filter_map(grid).collect();
         let illegal = grids.values().any(|grid| grid.check_ring(ring).is_err());

@@ -3,10 +3,11 @@
 use halfrow_model::{RowFactor, TableSet};
 
 use super::{StuckLine, with_grids};
+use crate::diagnosis::address_bits;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
-use crate::diagnosis::{Uploaded, address_bits};
 use crate::result::Defect;
+use crate::tables::Generation;
 
 /// Every data and address line, and entries read from one place too early or too late.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
@@ -24,7 +25,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 
 /// The grids that a line may affect.
 struct Lines<'a> {
-    generations: Vec<Uploaded<'a>>,
+    generations: Vec<&'a Generation>,
     ring: usize,
 }
 
@@ -46,13 +47,13 @@ impl Lines<'_> {
 
     /// Rows made with grids whose entries `read` gives. Entries beyond a grid are assumed to have the value at power-up.
     fn read<'a>(&self, defect: Defect, read: impl Fn(&[u32], usize) -> Option<u32>) -> Hypothesis<'a> {
-        let grid = |uploaded: &Uploaded<'_>| {
-            let tables = uploaded.tables;
+        let grid = |uploaded: &&Generation| {
+            let tables = &uploaded.tables;
             let entries: Vec<_> = tables.entries().collect();
             let entry = |index| read(&entries, index).unwrap_or(RowFactor::ONE.get());
             let read: Vec<_> = (0..entries.len()).map(entry).collect();
             let grid = TableSet::from_grid(*tables.geometry(), tables.shape()?, &read).ok()?;
-            Some((uploaded.generation, grid))
+            Some((uploaded.number, grid))
         };
         with_grids(defect, self.generations.iter().filter_map(grid).collect(), self.ring)
     }

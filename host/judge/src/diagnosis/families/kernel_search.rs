@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::first_where;
 use super::kernel_word::{KernelWord, common_words};
-use crate::diagnosis::Uploaded;
 use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
+use crate::tables::Generation;
 
 /// Differing rows that must agree, and as many that do not differ.
 const ROWS: usize = 192;
@@ -25,20 +25,20 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, word: KernelWord) -> Option<Hypothes
     let generations = witnesses.generations();
     let found: Vec<_> = generations
         .iter()
-        .filter_map(|uploaded| Some((uploaded, values(witnesses, uploaded.generation, word)?)))
+        .filter_map(|uploaded| Some((uploaded, values(witnesses, uploaded.number, word)?)))
         .collect();
     let (last, values) = found.last()?;
     let defect = Defect::KernelWordWrong {
         node: word.node,
         weight: word.weight(),
-        generation: last.generation,
+        generation: last.number,
         least: values.start,
         most: values.end - 1,
-        uploaded: word.of(last.kernel)?,
+        uploaded: word.of(&last.kernel)?,
         only: found.len() < generations.len(),
     };
-    let kernel = |(uploaded, values): &(&Uploaded<'_>, Range<i64>)| {
-        Some((uploaded.generation, word.replaced(uploaded.kernel, values.start as i16)?))
+    let kernel = |(uploaded, values): &(&&Generation, Range<i64>)| {
+        Some((uploaded.number, word.replaced(&uploaded.kernel, values.start as i16)?))
     };
     Some(super::with_kernels(defect, found.iter().filter_map(kernel).collect()))
 }
@@ -48,7 +48,7 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, word: KernelWord) -> Option<Hypothes
 fn values(witnesses: &Witnesses<'_>, generation: u8, word: KernelWord) -> Option<Range<i64>> {
     let mut values = VALUES;
     let mut differ = false;
-    for row in witnesses.sample(ROWS).filter(|row| row.uploaded.generation == generation) {
+    for row in witnesses.sample(ROWS).filter(|row| row.uploaded.number == generation) {
         differ |= row.differences > 0;
         let tables = row.tables();
         for column in 0..row.found.len() {
@@ -72,7 +72,7 @@ fn narrowed(
 ) -> Option<Range<i64>> {
     let found = *row.found.get(column)?;
     let output = |value: i64| {
-        let kernel = word.replaced(row.uploaded.kernel, value as i16);
+        let kernel = word.replaced(&row.uploaded.kernel, value as i16);
         kernel.map_or(found, |kernel| {
             RowTables { kernel: &kernel, ..tables.clone() }.output(row.samples(), column)
         })

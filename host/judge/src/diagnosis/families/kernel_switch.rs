@@ -29,13 +29,13 @@ fn switch(case: &Case<'_>, row: &Witness<'_>) -> Option<KernelSwitch> {
     if row.differences < LEAST {
         return None;
     }
-    let own = row.uploaded.generation;
+    let own = row.uploaded.number;
     let frame = case.frames.get(row.frame)?.number;
-    let others = case.uploaded.iter().rev().filter(|other| other.generation != own);
+    let others = case.uploaded.iter().rev().filter(|other| other.number != own);
     others
         .flat_map(|other| {
-            let made = RowTables { kernel: other.kernel, ..row.tables() }.corrected(row.samples());
-            let other = other.generation;
+            let made = RowTables { kernel: &other.kernel, ..row.tables() }.corrected(row.samples());
+            let other = other.number;
             let to_other = column(row.found, row.expected, &made).map(|column| (column, own, other));
             let from_other = column(row.found, &made, row.expected).map(|column| (column, other, own));
             to_other.or(from_other)

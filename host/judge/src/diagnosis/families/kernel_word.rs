@@ -3,10 +3,10 @@
 use halfrow_model::{Kernel, NODES, WEIGHT_NAMES};
 
 use super::table_word::{Word, changed, inversions, reading};
-use crate::diagnosis::Uploaded;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
 use crate::result::Defect;
+use crate::tables::Generation;
 
 /// Bits of a word.
 const BITS: u32 = 16;
@@ -70,9 +70,9 @@ impl KernelWord {
     }
 
     /// The word with each of its bits broken.
-    fn inverted<'a>(self, generations: &[Uploaded<'_>]) -> Vec<Hypothesis<'a>> {
-        let word = |uploaded: &Uploaded<'_>| {
-            Some((uploaded.generation, self.of(uploaded.kernel)?.cast_unsigned().into()))
+    fn inverted<'a>(self, generations: &[&Generation]) -> Vec<Hypothesis<'a>> {
+        let word = |uploaded: &&Generation| {
+            Some((uploaded.number, self.of(&uploaded.kernel)?.cast_unsigned().into()))
         };
         let words: Vec<Word> = generations.iter().filter_map(word).collect();
         let signed = |word: u32| word as u16 as i16;
@@ -80,7 +80,7 @@ impl KernelWord {
             let reading = reading(&words, read, |word| signed(word).into());
             let defect = Defect::KernelWordBitWrong { node: self.node, weight: self.weight(), bit, reading };
             let kernels = super::kernels(generations, |uploaded| {
-                self.replaced(uploaded.kernel, signed(changed(read, uploaded)?))
+                self.replaced(&uploaded.kernel, signed(changed(read, uploaded)?))
             });
             super::with_kernels(defect, kernels)
         };

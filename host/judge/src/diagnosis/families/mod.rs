@@ -24,11 +24,11 @@ use std::ops::Range;
 
 use halfrow_model::{Kernel, TableSet};
 
-use super::Uploaded;
 use super::datapath::{RowTables, Stretch};
 use super::hypothesis::{Hypothesis, Prediction};
 use super::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
+use crate::tables::Generation;
 
 /// The defects that the pattern of differences allows, those of the smallest parts first.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
@@ -67,16 +67,16 @@ pub(super) fn search<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 
 /// The kernels that `change` gives, by generation; generations for which it gives none are left out.
 fn kernels(
-    generations: &[Uploaded<'_>],
-    change: impl Fn(&Uploaded<'_>) -> Option<Kernel>,
+    generations: &[&Generation],
+    change: impl Fn(&Generation) -> Option<Kernel>,
 ) -> BTreeMap<u8, Kernel> {
-    generations.iter().filter_map(|uploaded| Some((uploaded.generation, change(uploaded)?))).collect()
+    generations.iter().filter_map(|uploaded| Some((uploaded.number, change(uploaded)?))).collect()
 }
 
 /// Rows made with these kernels, by generation. Other generations are as they should be.
 fn with_kernels<'a>(defect: Defect, kernels: BTreeMap<u8, Kernel>) -> Hypothesis<'a> {
     Hypothesis::new(defect, move |witness| {
-        let kernel = kernels.get(&witness.uploaded.generation)?;
+        let kernel = kernels.get(&witness.uploaded.number)?;
         Some(RowTables { kernel, ..witness.tables() }.corrected(witness.samples()).into())
     })
 }
@@ -84,7 +84,7 @@ fn with_kernels<'a>(defect: Defect, kernels: BTreeMap<u8, Kernel>) -> Hypothesis
 /// Rows made with these grids, by generation, on a board with a ring of `ring` samples. Other generations are as they should be.
 fn with_grids<'a>(defect: Defect, grids: BTreeMap<u8, TableSet>, ring: usize) -> Hypothesis<'a> {
     Hypothesis::new(defect, move |witness| {
-        let tables = with_grid(witness, grids.get(&witness.uploaded.generation)?)?;
+        let tables = with_grid(witness, grids.get(&witness.uploaded.number)?)?;
         let samples = tables.corrected(witness.samples());
         Some(Prediction::partly(samples, tables.foretold(ring)))
     })

@@ -18,14 +18,14 @@ fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
     let words: Vec<_> = witnesses
         .generations()
         .iter()
-        .filter_map(|uploaded| Some((uploaded.generation, uploaded.tables.row_factor(row)?.get())))
+        .filter_map(|uploaded| Some((uploaded.number, uploaded.tables.row_factor(row)?.get())))
         .collect();
     let bits =
         (0..RowFactor::BITS).flat_map(|bit| inversions(&words, bit).into_iter().map(move |read| (bit, read)));
     bits.map(|(bit, read)| {
         let (above_one, reading) = (is_illegal(&read), reading(&words, &read, i64::from));
         Hypothesis::new(Defect::RowFactorBitWrong { row, bit, reading, above_one }, move |witness| {
-            let read = changed(&read, &witness.uploaded).filter(|_| witness.row == row);
+            let read = changed(&read, witness.uploaded).filter(|_| witness.row == row);
             read.map(|entry| with_entry(witness, entry, ring))
         })
     })

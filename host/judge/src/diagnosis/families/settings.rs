@@ -3,11 +3,12 @@
 use halfrow_model::{BitDepth, Geometry};
 
 use super::StuckLine;
+use crate::diagnosis::Case;
 use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
-use crate::diagnosis::{Case, Uploaded};
 use crate::result::{Defect, Instead};
+use crate::tables::Generation;
 
 /// Bits of C.
 const CENTRE_BITS: u32 = 13;
@@ -76,7 +77,7 @@ fn made_by(case: &Case<'_>, witness: &Witness<'_>, depth: BitDepth, centre2: u32
         return None;
     }
     let geometry = Geometry::new(own.width(), own.height(), depth, own.centre2()).ok()?;
-    let Uploaded { tables, kernel, .. } = witness.uploaded;
+    let Generation { tables, kernel, .. } = witness.uploaded;
     let stretch = Stretch::about(tables, centre2, witness.row)?;
     let tables = RowTables { geometry: &geometry, centre2, stretch, kernel };
     Some(Prediction::partly(tables.corrected(witness.samples()), tables.foretold(case.ring)))

@@ -4,10 +4,11 @@ use halfrow_model::{Kernel, NODES, RowFactor, WEIGHT_NAMES};
 
 use super::StuckLine;
 use super::row_factor::with_entry;
+use crate::diagnosis::address_bits;
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::Witnesses;
-use crate::diagnosis::{Uploaded, address_bits};
 use crate::result::Defect;
+use crate::tables::Generation;
 
 /// Bits of a weight, and of a node's number.
 const WEIGHT_BITS: u32 = 16;
@@ -65,7 +66,7 @@ fn from_other_entry<'a>(
     })
 }
 
-fn node_address<'a>(generations: &[Uploaded<'_>], line: StuckLine) -> Hypothesis<'a> {
+fn node_address<'a>(generations: &[&Generation], line: StuckLine) -> Hypothesis<'a> {
     let defect = Defect::KernelAddressStuck { bit: line.bit, value: line.value() };
     with_nodes(generations, defect, |nodes| {
         let read = |node: usize| nodes.get(line.carry(node as u32) as usize).copied().unwrap_or_default();
@@ -73,7 +74,7 @@ fn node_address<'a>(generations: &[Uploaded<'_>], line: StuckLine) -> Hypothesis
     })
 }
 
-fn weight_data<'a>(generations: &[Uploaded<'_>], tap: usize, line: StuckLine) -> Hypothesis<'a> {
+fn weight_data<'a>(generations: &[&Generation], tap: usize, line: StuckLine) -> Hypothesis<'a> {
     let weight = WEIGHT_NAMES.get(tap).copied().unwrap_or_default();
     let defect = Defect::KernelDataStuck { weight: weight.to_owned(), bit: line.bit, value: line.value() };
     with_nodes(generations, defect, |nodes| {
@@ -87,13 +88,13 @@ fn weight_data<'a>(generations: &[Uploaded<'_>], tap: usize, line: StuckLine) ->
 
 /// All rows made with the nodes that `read` makes of the uploaded ones.
 fn with_nodes<'a>(
-    generations: &[Uploaded<'_>],
+    generations: &[&Generation],
     defect: Defect,
     read: impl Fn(&[[i16; 5]; NODES]) -> Vec<[i16; 5]>,
 ) -> Hypothesis<'a> {
     let kernels = super::kernels(generations, |uploaded| {
         let kernel = Kernel::from_nodes(read(uploaded.kernel.nodes())).ok()?;
-        (kernel != *uploaded.kernel).then_some(kernel)
+        (kernel != uploaded.kernel).then_some(kernel)
     });
     super::with_kernels(defect, kernels)
 }

@@ -1,7 +1,7 @@
 //! A word of a table in each generation, and what one broken cell makes of it.
 
-use crate::diagnosis::Uploaded;
 use crate::result::Reading;
+use crate::tables::Generation;
 
 /// The generation, and the word in its tables.
 pub(super) type Word = (u8, u32);
@@ -27,8 +27,8 @@ pub(super) fn inversions(words: &[Word], bit: u32) -> Vec<Vec<Word>> {
 }
 
 /// The word of the generation of `uploaded`, if it changed.
-pub(super) fn changed(words: &[Word], uploaded: &Uploaded<'_>) -> Option<u32> {
-    words.iter().find(|word| word.0 == uploaded.generation).map(|word| word.1)
+pub(super) fn changed(words: &[Word], uploaded: &Generation) -> Option<u32> {
+    words.iter().find(|word| word.0 == uploaded.number).map(|word| word.1)
 }
 
 /// What is read, and in which generation. `value` gives a word as people write it.

@@ -14,7 +14,7 @@ use super::watched::{BurstSeen, EndsEarly};
 use super::{FEW_AT_SPEED, USUAL};
 use crate::board::{NumberedFrame, Trapped, Unjudged};
 use crate::compare::{Comparison, bits_in};
-use crate::diagnosis::{self, Case, Uploaded};
+use crate::diagnosis::{self, Case};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
@@ -247,13 +247,14 @@ impl Run<'_> {
 
     /// The suspects by rows of the frame `frame` that are not among the streamed frames to judge.
     pub(in crate::run) fn diagnose_rows(&self, seen: &MadeRows, name: &str, frame: u16) -> Vec<Suspect> {
-        let MadeRows { made_by: Generation { number, tables, kernel }, evidence } = seen;
+        let MadeRows { made_by, evidence } = seen;
+        let tables = &made_by.tables;
         let frame = FrameReport {
             name: name.to_owned(),
             number: frame,
             sha256: String::new(),
             phase: self.plan.phase,
-            generation: *number,
+            generation: made_by.number,
             timing: self.least_blanking(tables),
             variation: None,
             first_rows: None,
@@ -263,7 +264,7 @@ impl Run<'_> {
             seconds: 0.0,
         };
         let mut suspects = diagnosis::diagnose(&Case {
-            uploaded: &[Uploaded { generation: *number, tables, kernel }],
+            uploaded: slice::from_ref(made_by),
             ring: self.board.capabilities.ring.into(),
             frames: slice::from_ref(&frame),
             evidence: slice::from_ref(evidence),

@@ -1,7 +1,7 @@
 //! Geometry and tables on their way to the board, and back through the datapath's own ports.
 
 use crate::board::{Bank, BoardError, ReadBack, RefusalCode, RowTiming, Table};
-use crate::diagnosis::{self, Uploaded};
+use crate::diagnosis;
 use crate::result::{CheckName, Finding, Suspect};
 use crate::run::findings::{During, End};
 use crate::run::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
@@ -87,11 +87,9 @@ impl Run<'_> {
         generation: &Generation,
         wrong: &ReadBack,
     ) -> End {
-        let Generation { number, tables, kernel } = generation;
-        let uploaded = Uploaded { generation: *number, tables, kernel };
         let entries = match wrong.port.table {
-            Table::RowFactors | Table::Grid => tables.entries().len(),
-            Table::Kernel => kernel.nodes().len(),
+            Table::RowFactors | Table::Grid => generation.tables.entries().len(),
+            Table::Kernel => generation.kernel.nodes().len(),
         };
         let found = match self.board.read_entries(bank, wrong.port, entries) {
             Ok(found) => found,
@@ -102,7 +100,7 @@ impl Run<'_> {
                 return End::failed(check, Finding::TableCrcWrong {});
             }
         };
-        let suspects = diagnosis::read_back(&uploaded, wrong.port.table, &found);
+        let suspects = diagnosis::read_back(generation, wrong.port.table, &found);
         let finding = match suspects.first().cloned() {
             Some(Suspect { defect, account, .. }) => {
                 Finding::TableReadsWrong { defect: Box::new(defect), account }

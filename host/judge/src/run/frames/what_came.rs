@@ -4,10 +4,10 @@ use super::counters::{counters, leaves_counters_out};
 use super::entry::WrongEntry;
 use super::observations::Observations;
 use crate::board::Bank;
-use crate::diagnosis::{self, Case, Uploaded};
+use crate::diagnosis::{self, Case};
 use crate::result::{Account, CheckName, Defect, Finding, Lead, Suspect};
 use crate::run::findings::{During, End, Findings};
-use crate::run::plan::{DECOY, Generation};
+use crate::run::plan::DECOY;
 use crate::run::steps::Run;
 
 impl Run<'_> {
@@ -104,13 +104,8 @@ impl Run<'_> {
     }
 
     fn diagnose(&self, seen: &Observations) -> Vec<Suspect> {
-        let uploaded: Vec<_> = self
-            .generations
-            .iter()
-            .map(|Generation { number, tables, kernel }| Uploaded { generation: *number, tables, kernel })
-            .collect();
         diagnosis::diagnose(&Case {
-            uploaded: &uploaded,
+            uploaded: &self.generations,
             ring: usize::from(self.board.capabilities.ring),
             frames: &seen.frames,
             evidence: seen.evidence.all(),

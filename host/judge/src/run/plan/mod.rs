@@ -19,30 +19,12 @@ use rand_pcg::Pcg64Mcg;
 use crate::frames::{Builtin, Scene};
 use crate::result::{SoakLength, Variation};
 use crate::run::at_speed::{WILD, drawn_factors, drawn_kernel};
+pub use crate::tables::Generation;
 use parts::{Part, Selection};
 use variations::{Build, Vary, varied};
 
 /// Pixel clocks between two rows of the paper's sensor (MT9P031) at 1080p.
 pub(crate) const SENSOR_BLANKING: u16 = 900;
-
-/// Tables and kernel that are committed as one generation.
-#[derive(Clone, Debug)]
-pub struct Generation {
-    /// The generation's number, 1 to 255.
-    pub number: u8,
-    /// Row factors or a grid.
-    pub tables: TableSet,
-    /// The kernel.
-    pub kernel: Kernel,
-}
-
-impl Generation {
-    /// The same generation for frames of only the first `rows` rows.
-    pub(crate) fn upper(&self, rows: usize) -> Option<Self> {
-        let Self { number, tables, kernel } = self;
-        Some(Self { number: *number, tables: tables.upper(rows)?, kernel: kernel.clone() })
-    }
-}
 
 /// The most frames that a plan can have, repetitions counted: frame numbers have 16 bits, and a run adds up to seven frames of
 /// noise of its own.
