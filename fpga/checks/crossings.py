@@ -174,23 +174,20 @@ def missed(top, mutants):
         return [(path, edit) for path, edit, spoilt in mutants if not any(spoilt in fault for fault in faults)]
 
 
-def mutants(kind):
-    return edits.of_kind(HERE / "crossings.txt", kind)
-
-
 def main():
     is_long = sys.argv[1:] == ["long"]
     every = [top for board in tops.CELLS for top in tops.all_of(board) if is_long or top.sensor]
     spoilable = [top for top in tops.all_of("minispartan6plus") if top.sensor]
+    mutants = edits.by_kind(HERE / "crossings.txt", [top.kind for top in spoilable])
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         judged = [pool.submit(faults_of, top) for top in every]
-        spoilt = [pool.submit(missed, top, mutants(top.kind)) for top in spoilable]
+        spoilt = [pool.submit(missed, top, mutants[top.kind]) for top in spoilable]
         wrong = sorted({fault for top in judged for fault in top.result()[0]})
         wrong += [f"this fault is not refused: {path}: {edit}" for top in spoilt for path, edit in top.result()]
     if wrong:
         sys.exit("crossings: " + "\ncrossings: ".join(wrong))
     print("\n".join(top.result()[1] for top in judged))
-    print(f"PASS {sum(len(mutants(top.kind)) for top in spoilable)} faults put into crossings are refused")
+    print(f"PASS {sum(map(len, mutants.values()))} faults put into crossings are refused")
 
 
 if __name__ == "__main__":

@@ -10,10 +10,18 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 IGNORED = shutil.ignore_patterns("target", "model", "mock", "sim", "coverage", "__pycache__")
 
 
-def of_kind(file, kind):
-    """(file in the project, edit for `sed -E`, what the check must say) of each line whose first column is this kind."""
+def by_kind(file, kinds):
+    """(file in the project, edit for `sed -E`, what the check must say) of each line, by its first column, which is one of these kinds.
+    An edit of another kind would never be tried, so it is refused, and so is a kind without an edit."""
     lines = [line.strip() for line in file.read_text().splitlines() if line and not line.startswith("#")]
-    return [tuple(rest) for first, *rest in (re.split(r"\s{2,}", line, maxsplit=3) for line in lines) if first == kind]
+    found = {kind: [] for kind in kinds}
+    for first, *rest in (re.split(r"\s{2,}", line, maxsplit=3) for line in lines):
+        found.setdefault(first, []).append(tuple(rest))
+    wrong = [f"{first} is no kind of {file.name}" for first in found if first not in kinds]
+    wrong += [f"{file.name} has no edit of {kind}" for kind in kinds if not found[kind]]
+    if wrong:
+        sys.exit("edits: " + "\nedits: ".join(wrong))
+    return found
 
 
 def spoil(tree, edits):

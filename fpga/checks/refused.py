@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Checks that judges refuse: all edits of refused.txt that belong to a judge, made in a copy of the sources, must be named by it.
-    refused.py JUDGE...     JUDGE: a program of fpga, such as checks/form.py
+    refused.py JUDGE...     JUDGE: a program of fpga, such as checks/form.py; with none it only reads refused.txt
 """
 import pathlib
 import subprocess
@@ -10,6 +10,7 @@ import tempfile
 import edits
 
 CASES = pathlib.Path(__file__).resolve().parent / "refused.txt"
+JUDGES = ["bench/modules", *(f"checks/{name}.py" for name in ("crossings", "dialect", "form", "parameters", "refused", "wire"))]
 
 
 def missed(judge, cases):
@@ -22,10 +23,10 @@ def missed(judge, cases):
 
 
 def main():
+    all_cases = edits.by_kind(CASES, JUDGES)
     for judge in sys.argv[1:]:
-        cases = edits.of_kind(CASES, judge)
-        wrong = missed(judge, cases) if cases else [f"{judge} has no edit"]
-        if wrong:
+        cases = all_cases[judge]
+        if wrong := missed(judge, cases):
             sys.exit("refused: " + "\nrefused: ".join(wrong))
         print(f"PASS {judge} refuses {len(cases)} edits")
 
