@@ -159,17 +159,27 @@ def options():
     return known
 
 
+def lines_of_commands(page):
+    """The numbers of the lines that are commands."""
+    shell = [(kind, line, lines) for kind, line, lines in pieces(page) if kind == "indented" or kind.startswith("```sh")]
+    return {line + at for kind, line, lines in shell for at, _ in enumerate(lines, kind != "indented")}
+
+
 def unknown(page, known):
     """Commands and options that a page uses and that do not exist."""
-    text = page.read_text()
-    for call in re.finditer(r"(?:`|^|^ +|sudo -u halfrow )(halfrow(?:-station)?)((?: [^`\n|#;]*)?)", text, re.M):
-        program, words = call[1], call[2].split(" -- ")[0].split()
+    text, commands = page.read_text(), lines_of_commands(page)
+    # Among commands, a program may stand behind anything, such as what starts a container, but a name in front of one is a user's.
+    for call in re.finditer(r"(`|^ *|sudo -u halfrow |(?<= ))(halfrow(?:-station)?)(?! +halfrow)((?: [^`\n|#;]*)?)", text, re.M):
+        line = text.count("\n", 0, call.start(2)) + 1
+        if not call[1] and call.start() and text[call.start() - 1] == " " and line not in commands:
+            continue
+        program, words = call[2], call[3].split(" -- ")[0].split()
         name, following, given = program, words, [word.split("=")[0] for word in words if re.match(r"--[a-z]", word)]
-        where = f"{page.relative_to(ROOT)}:{text[:call.start()].count(chr(10)) + 1}"
+        where = f"{page.relative_to(ROOT)}:{line}"
         for place, word in enumerate(words):
             if f"{name} {word}" in known:
                 name, following = f"{name} {word}", words[place + 1:]
-        is_prose = call.start() == call.start(1) and text.count("```", 0, call.start()) % 2 == 0
+        is_prose = not call[1] and line not in commands and text.count("```", 0, call.start()) % 2 == 0
         has_commands = any(other.startswith(f"{name} ") for other in known)
         if has_commands and not is_prose and following and re.fullmatch("(?!help$)[a-z][a-z-]*", following[0]):
             yield f"{where}: {name} has no command {following[0]}"
