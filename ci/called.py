@@ -1,4 +1,4 @@
-"""What the examples for GitHub and GitLab call, told and run without either.
+"""What the examples for GitHub and GitLab, and the script of docs/ci.md for any other system, call: told and run without these.
   called.py shell FOLDER    writes each piece of shell into FOLDER, as shellcheck reads it, and GitLab's jobs with all that they extend
   called.py run FOLDER      runs all jobs: FOLDER has the sources as GitHub fetches an action (action) and as a repository (halfrow.git)
 An expression, condition or step that is not known here is an error, never passed over."""
@@ -113,6 +113,39 @@ def gitlab(folder, job, variables, shell):
     return ended.returncode, [case.get("name") for case in cases if case.find("failure") is not None], len(cases)
 
 
+def other_shell():
+    """The script of the page for anything with a shell, of which there is one."""
+    found = re.findall(r"^```sh\n(.*?)^```$", (HERE.parent / "docs/ci.md").read_text(), re.M | re.S)
+    assert len(found) == 1, f"docs/ci.md has {len(found)} scripts"
+    return found[0]
+
+
+def other(folder, programs, board, shell):
+    """Runs it as Jenkins does, without its pauses: its exit code, how often it paused, and whether its report has a check that failed."""
+    (folder / "bin").mkdir(parents=True, exist_ok=True)
+    (folder / "bin/sleep").write_text("#!/bin/sh\necho >>paused\n")
+    (folder / "bin/sleep").chmod(0o755)
+    paused = folder / "paused"
+    paused.write_text("")
+    found = f"{folder / 'bin'}:{programs}:{os.environ['PATH']}"
+    ended = subprocess.run(["sh", "-e", "-c", shell], cwd=folder, env=os.environ | {"PATH": found, "BOARD": board})
+    cases = xml.etree.ElementTree.parse(folder / "report/report.xml").iter("testcase")
+    return ended.returncode, len(paused.read_text()), any(list(case.iterfind(kind)) for case in cases for kind in ("failure", "error"))
+
+
+def run_other(folder, programs):
+    """The script with a mock in the board's place, which it must refuse; without that, as with a board; and with no board at all."""
+    shell = other_shell()
+    asks = shell.replace(" --require-hardware", "")
+    assert asks != shell
+    for told, board, script, expected in [("a PASS", "mock", asks, (0, 0, False)), ("a mock behind it", "mock", shell, (5, 0, True)),
+                                          ("a broken board", BROKEN, asks, (1, 0, True)),
+                                          ("no board, asked for twice", "serial:/dev/halfrow-none", shell, (3, 2, True))]:
+        result = other(folder, programs, board, script)
+        assert result == expected, (told, result)
+        print(f"any other system, {told}: {result[0]}")
+
+
 def run(folder):
     job = read("github.yml")["jobs"]["verify"]
     for row in job["strategy"]["matrix"]["include"]:
@@ -135,6 +168,7 @@ def run(folder):
             code, failures, _ = gitlab(folder / f"gitlab-{name}", job, variables | {"BOARD": BROKEN}, shell)
             assert code == 1 and failures, (code, failures)
             print("GitLab, a broken board: FAIL, by JUnit too")
+    run_other(folder / "other", folder / "gitlab-mock/.halfrow/bin")
 
 
 def write_shell(folder):
@@ -149,6 +183,9 @@ def write_shell(folder):
         known = "".join(f"{variable}=${{{variable}:?}}\n" for variable in variables)
         # $ARGUMENTS is parted at its spaces there, as the example says.
         (folder / f"gitlab-{name}").write_text(f"#!/bin/bash -e\n# shellcheck disable=SC2086\n{known}{shell}")
+
+
+    (folder / "other").write_text(f"#!/bin/sh -e\nBOARD=${{BOARD:?}}\n{other_shell()}")
 
 
 def main():
