@@ -133,6 +133,7 @@ def missing(edif, ucf):
 
 
 def ucf_of(top):
+    """The constraints of a top, put together as `build` does it."""
     board = tops.ROOT / "fpga/boards" / top.board
     return "".join((board / f"{name}.ucf").read_text() for name in ("common", top.kind, *(["sensor"] if top.sensor else [])))
 

@@ -11,6 +11,7 @@ import tempfile
 
 import constraints
 import judge_reports
+import edif  # found where judge_reports looks
 
 HERE = pathlib.Path(__file__).resolve().parent
 REPORTS = ("top.syr", "top.bld", "top_map.mrp", "top.par", "top.twr")
@@ -24,19 +25,14 @@ def laid(folder):
     """Copies the good reports to the folder, and the constraints that belong to them."""
     for name in REPORTS:
         shutil.copy(HERE / "reports" / name, folder)
-    (folder / "top.ucf").write_text(ucf_of("fifo", True))
-
-
-def ucf_of(kind, sensor):
-    """The constraints of a top, put together as `build` does it."""
-    return "".join((HERE / f"{name}.ucf").read_text() for name in ("common", kind, *["sensor"] * sensor))
+    (folder / "top.ucf").write_text(edif.ucf_of(edif.tops.Top(judge_reports.BOARD, "fifo", True)))
 
 
 def too_slack():
     """Where a top's constraints ask too little."""
     for top, limits in judge_reports.budget.tops():
         if top.board == judge_reports.BOARD:
-            yield from constraints.faults(ucf_of(top.kind, top.sensor), top.kind, top.sensor, float(limits["crossing_ns"]))
+            yield from constraints.faults(edif.ucf_of(top), top.kind, top.sensor, float(limits["crossing_ns"]))
 
 
 def refused(folder, wanted):
