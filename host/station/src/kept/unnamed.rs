@@ -58,12 +58,20 @@ pub fn prune_unnamed(store: &mut Store, operator: &str) -> Result<Unnamed, Store
 fn old_pieces(store: &Store, blobs: &Blobs) -> Result<Vec<Piece>, StoreError> {
     let named = Snapshot::take(store.folder())?.named_evidence()?;
     let all = blobs.all()?;
-    let records = blobs.unnamed_records(&all, &named)?.into_iter();
-    let kept: BTreeSet<_> =
-        records.flat_map(|record| [vec![record.sha256], record.attachments].concat()).collect();
+    let kept = of_unnamed_records(blobs, &all, &named)?;
     let may_go =
         |piece: &Piece| is_old(piece.modified) && !named.contains(&piece.hash) && !kept.contains(&piece.hash);
     Ok(all.into_iter().filter(may_go).collect())
+}
+
+/// The records among `pieces` that are not in `named`, the hashes that rows name, and what these records name.
+pub(super) fn of_unnamed_records(
+    blobs: &Blobs,
+    pieces: &[Piece],
+    named: &BTreeSet<String>,
+) -> Result<BTreeSet<String>, StoreError> {
+    let records = blobs.unnamed_records(pieces, named)?.into_iter();
+    Ok(records.flat_map(|record| [vec![record.sha256], record.attachments].concat()).collect())
 }
 
 /// The spool of a run that is over, or that no row names.

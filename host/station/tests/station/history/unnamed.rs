@@ -7,13 +7,13 @@ use std::thread;
 use std::time::{Duration, SystemTime};
 
 use halfrow_station::check::{Fault, check};
-use halfrow_station::kept::{Copied, Unnamed, backup, prune_unnamed, restore};
+use halfrow_station::kept::{Copied, Pruned, Unnamed, backup, prune, prune_unnamed, restore};
 use halfrow_station::record::RunCause;
 use halfrow_station::run::recover;
 use halfrow_station::store::Folder;
 
 use super::commands::did;
-use super::made::{BEGIN_MS, End, Made, Run, id};
+use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, id};
 use crate::common::{Over, query};
 use crate::runs::bench::{PLAN, Station};
 
@@ -93,6 +93,26 @@ fn a_record_that_no_row_names_stays_and_what_it_names() {
     for hash in &theirs {
         made.folder().blobs().get(hash).unwrap();
     }
+}
+
+/// The row of the younger run that has the evidence, too, is lost with an older copy of the database that was put back.
+#[test]
+fn what_a_record_without_a_row_names_does_not_go_with_the_old_run_that_has_it_too() {
+    let mut made = Made::new();
+    let run = |serial, hour| {
+        let (started_ms, evidence) = (BEGIN_MS + hour * HOUR_MS, vec!["seen"]);
+        Run { started_ms, evidence, ..Run::of(serial, End::Fail(&["memory"])) }
+    };
+    made.run(&run("S1", 0));
+    let folder = made.closed();
+    let earlier = fs::read(folder.path().join("station.db")).unwrap();
+    let mut made = Made::at(folder);
+    made.numbered(2, &run("S2", 48));
+    let folder = made.closed();
+    fs::write(folder.path().join("station.db"), earlier).unwrap();
+    let mut made = Made::at(folder);
+    assert_eq!(prune(&mut made.store, BEGIN_MS + 24 * HOUR_MS, "engel").unwrap(), Pruned::default());
+    assert!(made.folder().blobs().get(&halfrow::result::sha256(["seen"])).is_ok());
 }
 
 /// A database of last night that is put back lies next to today's records, and goes on without their runs.
