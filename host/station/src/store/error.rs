@@ -37,7 +37,7 @@ pub enum StoreError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The folder has evidence of earlier runs, but no database, or an empty one.
+    /// The folder has evidence of earlier runs, or a log of them, but no database, or an empty one.
     #[error(
         "{} has evidence of earlier runs and no station.db that tells of them; bring back station.db and station.db-wal, restore the folder from a copy, or name \
          another folder",

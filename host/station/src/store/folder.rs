@@ -16,7 +16,7 @@ use rusqlite::config::DbConfig;
 use rusqlite::{Connection, ErrorCode, OpenFlags, ffi};
 
 use super::database::Sqlite;
-use super::{Database, DatabaseError, PATIENCE, StoreError, Stored};
+use super::{Database, DatabaseError, PATIENCE, StoreError, Stored, generation};
 use crate::record::Blobs;
 
 /// How long to wait for a program that is just ending to leave the folder, and the time between two tries.
@@ -80,7 +80,7 @@ impl Folder {
     }
 
     /// What is in the database's place is something else.
-    fn no_database(&self, why: &str) -> StoreError {
+    pub(super) fn no_database(&self, why: &str) -> StoreError {
         let code = ffi::Error::new(ffi::SQLITE_NOTADB);
         let source = rusqlite::Error::SqliteFailure(code, Some(why.to_owned()));
         StoreError::of_file(&self.database(), "to be read", source)
@@ -97,20 +97,23 @@ impl Folder {
         fs::metadata(self.0.join("blobs")).map(drop).map_err(|source| self.refused(source))
     }
 
-    /// Refuses a folder that has evidence and no database: no station may start from scratch there.
+    /// Refuses a folder that has evidence, or a log, and no database or an empty file: no station may start from scratch there,
+    /// and SQLite would remove the log.
     pub(super) fn refuse_lost_database(&self) -> Result<(), StoreError> {
-        self.refuse_lost(fs::metadata(self.database()).is_err())
+        let is_gone = fs::metadata(self.database()).map_or(true, |about| about.is_file() && about.len() == 0);
+        self.refuse_lost(is_gone, generation::has_left_log(self))
     }
 
     /// The same for a `database` without any table, as where it was copied without its write-ahead log.
     pub(super) fn refuse_lost_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
         let tables =
             tables(database).map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
-        self.refuse_lost(tables == 0)
+        // The log may be of a first start that did not end.
+        self.refuse_lost(tables == 0, false)
     }
 
-    fn refuse_lost(&self, is_empty: bool) -> Result<(), StoreError> {
-        let is_lost = is_empty && self.blobs().has_any();
+    fn refuse_lost(&self, is_empty: bool, has_log: bool) -> Result<(), StoreError> {
+        let is_lost = is_empty && (has_log || self.blobs().has_any());
         if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
     }
 

@@ -159,18 +159,22 @@ pub(super) enum Log {
     Unknown,
 }
 
+/// Whether a log with pages was left in `folder`.
+pub(super) fn has_left_log(folder: &Folder) -> bool {
+    fs::metadata(folder.database().with_extension("db-wal")).is_ok_and(|log| log.len() > EMPTY_LOG)
+}
+
 /// Examines the log that was left in `folder`, in which nobody works, before a connection plays it into the database.
 pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreError> {
     let refused = |source| folder.refused(source);
     folder.refuse_pipe()?;
     let path = folder.database();
     let found = header(&path).map_err(refused)?;
-    let log = fs::metadata(path.with_extension("db-wal"));
-    let is_left = log.is_ok_and(|log| log.len() > EMPTY_LOG);
-    let (Some(found), true) = (found, is_left) else {
+    if !has_left_log(folder) {
         // A database that does not exist yet will have 0.
         return Ok((Log::None, Generations(vec![found.unwrap_or_default()])));
-    };
+    }
+    let Some(found) = found else { return Err(folder.no_database("it is too short for one")) };
     let mut noted = noted(folder);
     if noted.0.is_empty() {
         return Ok((Log::Unknown, Generations(vec![found])));

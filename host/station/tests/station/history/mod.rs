@@ -5,6 +5,7 @@ mod control;
 mod copied;
 mod copied_plans;
 mod counted;
+mod damaged;
 mod exports;
 pub(crate) mod generated;
 pub(crate) mod in_time;
