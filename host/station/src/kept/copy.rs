@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use halfrow::files::written_aside::Place;
 
+use super::unnamed::beyond_rows;
 use crate::check::{Fault, check, foreign};
 use crate::published::{BundleError, KeptPlans};
 use crate::record::{BlobError, Blobs, Piece, synced};
@@ -235,14 +236,15 @@ fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Cop
         }
         taken => taken?,
     };
-    let named = copy.named_evidence()?;
+    let mut named = copy.named_evidence()?;
+    named.append(&mut beyond_rows(&from.blobs(), &copy)?);
     let evidence = copy_named(&named, &from.blobs(), &to.blobs(), ends)?;
     let (unknown, left_out) = copy_unnamed(&copy, (&pieces, &named), [&from.blobs(), &to.blobs()], ends)?;
     synced(aside).map_err(StoreError::from)?;
     Ok(Copied { runs: copy.final_runs()?.len(), evidence, unknown, left_out })
 }
 
-/// Copies the evidence that rows name, and returns how many pieces. What is left out may have been removed by its age: a check of the
+/// Copies the evidence in `named`, and returns how many pieces. What is left out may have been removed by its age: a check of the
 /// copy says whether it should be there, and all the rest may be needed one day.
 fn copy_named(
     named: &BTreeSet<String>,

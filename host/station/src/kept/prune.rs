@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::unnamed::of_unnamed_records;
+use super::unnamed::{beyond_rows, of_unnamed_records};
 use crate::record::BlobError;
 use crate::store::{Snapshot, Store, StoreError};
 
@@ -15,19 +15,22 @@ pub struct Pruned {
     pub bytes: u64,
 }
 
-/// Removes all evidence whose runs all ended before `before_ms`, milliseconds since 1970, UTC, and that is named by no record
-/// without a row. The removal is entered in the audit first, so that `check` can tell what was removed from what is lost.
+/// Removes all evidence whose runs all ended before `before_ms`, milliseconds since 1970, UTC. What a record names and no row
+/// of its run does stays. The removal is entered in the audit first, so that `check` can tell what was removed from what is lost.
 ///
 /// # Errors
 /// [`StoreError`]; what was removed before is in the audit.
 pub fn prune(store: &mut Store, before_ms: i64, operator: &str) -> Result<Pruned, StoreError> {
     let blobs = store.folder().blobs();
     let old = store.old_evidence(before_ms)?;
-    let named = Snapshot::take(store.folder())?.named_evidence()?;
-    // The run of a record that no row names may be younger than those with rows.
-    let kept = of_unnamed_records(&blobs, &blobs.all()?, &named)?;
-    let may_go = |hash: &String| !kept.contains(hash) && blobs.path(hash).is_file();
-    let here: Vec<_> = old.into_iter().filter(may_go).collect();
+    let mut here: Vec<_> = old.into_iter().filter(|hash| blobs.path(hash).is_file()).collect();
+    if !here.is_empty() {
+        let snapshot = Snapshot::take(store.folder())?;
+        // A run whose record or attachment has no row may be younger than those with rows.
+        let mut kept = of_unnamed_records(&blobs, &blobs.all()?, &snapshot.named_evidence()?)?;
+        kept.append(&mut beyond_rows(&blobs, &snapshot)?);
+        here.retain(|hash| !kept.contains(hash));
+    }
     store.note_removed(operator, "prune", &here, "older than it is kept")?;
     let mut pruned = Pruned::default();
     for hash in &here {

@@ -56,12 +56,30 @@ pub fn prune_unnamed(store: &mut Store, operator: &str) -> Result<Unnamed, Store
 
 /// The evidence that may go.
 fn old_pieces(store: &Store, blobs: &Blobs) -> Result<Vec<Piece>, StoreError> {
-    let named = Snapshot::take(store.folder())?.named_evidence()?;
+    let snapshot = Snapshot::take(store.folder())?;
+    let named = snapshot.named_evidence()?;
     let all = blobs.all()?;
     let kept = of_unnamed_records(blobs, &all, &named)?;
     let may_go =
         |piece: &Piece| is_old(piece.modified) && !named.contains(&piece.hash) && !kept.contains(&piece.hash);
-    Ok(all.into_iter().filter(may_go).collect())
+    let mut pieces: Vec<_> = all.into_iter().filter(may_go).collect();
+    if !pieces.is_empty() {
+        let beyond = beyond_rows(blobs, &snapshot)?;
+        pieces.retain(|piece| !beyond.contains(&piece.hash));
+    }
+    Ok(pieces)
+}
+
+/// What records name for which their runs have no row of an attachment, because the database has lost it. Of a record that cannot
+/// be read only its rows tell.
+pub(super) fn beyond_rows(blobs: &Blobs, snapshot: &Snapshot) -> Result<BTreeSet<String>, StoreError> {
+    let rows = snapshot.attachments()?;
+    let mut beyond = BTreeSet::new();
+    for (run, record) in snapshot.final_runs()? {
+        let named = blobs.named_by(&record).into_iter();
+        beyond.extend(named.filter(|hash| !rows.get(&run).is_some_and(|of_run| of_run.contains(hash))));
+    }
+    Ok(beyond)
 }
 
 /// The records among `pieces` that are not in `named`, the hashes that rows name, and what these records name.

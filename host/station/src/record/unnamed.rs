@@ -47,6 +47,11 @@ impl Blobs {
         unnamed.filter_map(|piece| self.as_record(&piece.hash).transpose())
     }
 
+    /// The hashes of the evidence that the record with this hash names; none if it cannot be read.
+    pub(crate) fn named_by(&self, record: &str) -> Vec<String> {
+        self.as_record(record).ok().flatten().map_or_else(Vec::new, |record| record.attachments)
+    }
+
     fn as_record(&self, hash: &str) -> Result<Option<UnnamedRecord>, BlobError> {
         let path = self.path(hash);
         let bytes = match read(&path) {

@@ -32,6 +32,18 @@ impl Snapshot {
         Ok(named.into_iter().collect())
     }
 
+    /// The hashes of the attachments that rows name, by the run.
+    pub(crate) fn attachments(&self) -> Result<BTreeMap<String, BTreeSet<String>>, StoreError> {
+        let rows = self.rows("to tell its attachments", sql::ATTACHMENTS, &[], |row| {
+            Ok((row.get::<String>(0)?, row.get(1)?))
+        })?;
+        let mut attachments = BTreeMap::<_, BTreeSet<_>>::new();
+        for (run, hash) in rows {
+            attachments.entry(run).or_default().insert(hash);
+        }
+        Ok(attachments)
+    }
+
     /// Those of `records` whose runs have no row, not even an open one.
     pub(crate) fn without_row(
         &self,

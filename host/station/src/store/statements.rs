@@ -98,6 +98,7 @@ statements! {
     pub(super) PRUNED = "pruned.sql";
     pub(super) OLD_EVIDENCE = "old-evidence.sql";
     pub(super) NAMED_EVIDENCE = "named-evidence.sql";
+    pub(super) ATTACHMENTS = "attachments.sql";
     pub(crate) RUNS = "runs.sql";
     pub(crate) PLANS = "plans.sql";
     pub(crate) UNITS_OF_SERIAL = "units-of-serial.sql";

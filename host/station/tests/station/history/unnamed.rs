@@ -115,6 +115,34 @@ fn what_a_record_without_a_row_names_does_not_go_with_the_old_run_that_has_it_to
     assert!(made.folder().blobs().get(&halfrow::result::sha256(["seen"])).is_ok());
 }
 
+#[test]
+fn what_a_record_names_stays_and_is_copied_where_its_rows_are_lost() {
+    let mut made = Made::new();
+    for (serial, evidence, hour) in [("S1", vec!["shared"], 0), ("S2", vec!["shared", "seen"], 48)] {
+        let started_ms = BEGIN_MS + hour * HOUR_MS;
+        made.run(&Run { started_ms, evidence, ..Run::of(serial, End::Fail(&["memory"])) });
+    }
+    let folder = made.folder();
+    for hash in query(made.as_ref(), "SELECT sha256 FROM attachment UNION SELECT record_sha256 FROM run") {
+        aged(&folder.blobs().path(&hash), 1000 * HOUR);
+    }
+    let database = rusqlite::Connection::open(folder.database()).unwrap();
+    let lost = "DELETE FROM attachment WHERE run_id = (SELECT max(id) FROM run)";
+    assert_eq!(database.execute(lost, []).unwrap(), 2);
+    assert_eq!(prune(&mut made.store, BEGIN_MS + 24 * HOUR_MS, "engel").unwrap(), Pruned::default());
+    assert_eq!(prune_unnamed(&mut made.store, "engel").unwrap(), Unnamed::default());
+    let place = tempfile::tempdir().unwrap();
+    let copy = place.path().join("copy");
+    assert_eq!(backup(&folder, &copy).unwrap().evidence, 4);
+    for folder in [folder, Folder::new(&copy)] {
+        assert_eq!(
+            check(&folder).unwrap().evidence,
+            5,
+            "the shared piece is looked at with each of its runs"
+        );
+    }
+}
+
 /// A database of last night that is put back lies next to today's records, and goes on without their runs.
 #[test]
 fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {

@@ -1,0 +1,1 @@
+SELECT run_id, sha256 FROM attachment;
