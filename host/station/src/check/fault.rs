@@ -22,6 +22,9 @@ pub enum Fault {
         /// What is wrong.
         source: BlobError,
     },
+    /// What no row names cannot be read, and may be the record of a run.
+    #[error("evidence that no row names: {0}")]
+    Piece(#[source] BlobError),
     /// A run's record matches its hash, but cannot be understood.
     #[error("the record of run {run}: {source}")]
     Record {

@@ -15,11 +15,11 @@ pub use superseded::Superseded;
 
 use crate::plan::plan_hash;
 use crate::published::KeptPlans;
-use crate::record::{Blobs, PlanRecord, Record, UnnamedRecord};
+use crate::record::{Blobs, Piece, PlanRecord, Record, UnnamedRecord};
 use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Snapshot, StoreError, TABLES};
 
 /// What was checked, and what is wrong.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Checked {
     /// Runs that are over.
     pub runs: usize,
@@ -45,8 +45,33 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     // Listed before the snapshot, because a run has a row before it has a record.
     let pieces = folder.blobs().all()?;
     let snapshot = Snapshot::take(folder)?;
-    let mut faults: Vec<_> = snapshot.damage()?.into_iter().map(|said| Fault::Database { said }).collect();
+    let faults: Vec<_> = snapshot.damage()?.into_iter().map(|said| Fault::Database { said }).collect();
+    let is_damaged = !faults.is_empty();
+    let mut checked = Checked { faults, ..Checked::default() };
+    unless_damaged(is_damaged, at_runs(folder, &snapshot, is_damaged, &mut checked))?;
+    unless_damaged(is_damaged, at_waivers(&snapshot, &mut checked))?;
+    unless_damaged(is_damaged, at_unnamed(folder, &pieces, &snapshot, &mut checked))?;
+    checked.faults.extend(foreign(folder)?);
+    Ok(checked)
+}
+
+/// What the database refuses is no error where it is damaged: that was told, and hides nothing else.
+fn unless_damaged(is_damaged: bool, looked: Result<(), StoreError>) -> Result<(), StoreError> {
+    match looked {
+        Err(StoreError::Database { .. } | StoreError::Damaged { .. }) if is_damaged => Ok(()),
+        looked => looked,
+    }
+}
+
+/// Reads all records, and compares the tables with those that are made anew from them.
+fn at_runs(
+    folder: &Folder,
+    snapshot: &Snapshot,
+    is_damaged: bool,
+    checked: &mut Checked,
+) -> Result<(), StoreError> {
     let (finals, open) = (snapshot.final_runs()?, snapshot.open_runs()?);
+    let rebindings = snapshot.rebindings()?;
     let mut look = Look {
         blobs: folder.blobs(),
         removed: snapshot.pruned()?,
@@ -55,20 +80,50 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
         evidence: 0,
         pruned: 0,
         unread: 0,
-        faults: Vec::new(),
+        faults: mem::take(&mut checked.faults),
     };
-    look.at_all(&finals, &open, &snapshot.rebindings()?);
-    faults.append(&mut look.faults);
+    look.at_all(&finals, &open, &rebindings);
+    let Look { mut rebuilt, evidence, pruned, unread, faults, .. } = look;
+    *checked = Checked {
+        runs: finals.len(),
+        open: open.len(),
+        evidence,
+        pruned,
+        unread,
+        faults,
+        superseded: Vec::new(),
+    };
     for (table, key) in TABLES {
-        compare(table, snapshot.table(table, key), look.rebuilt.table(table, key), &mut faults)?;
+        let (stored, rebuilt) = (snapshot.table(table, key), rebuilt.table(table, key));
+        unless_damaged(is_damaged, compare(table, stored, rebuilt, &mut checked.faults))?;
     }
-    faults.extend(snapshot.waivers_unlike_audit()?.into_iter().map(|run| Fault::Waiver { run }));
-    let unnamed = folder.blobs().unnamed_records(&pieces, &snapshot.named_evidence()?)?;
-    let superseded = superseded::superseded(&folder.blobs(), &unnamed, &snapshot)?;
-    faults.extend(without_row(unnamed, &snapshot)?);
-    faults.extend(foreign(folder)?);
-    let Look { evidence, pruned, unread, .. } = look;
-    Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, unread, superseded, faults })
+    Ok(())
+}
+
+fn at_waivers(snapshot: &Snapshot, checked: &mut Checked) -> Result<(), StoreError> {
+    let runs = snapshot.waivers_unlike_audit()?.into_iter();
+    checked.faults.extend(runs.map(|run| Fault::Waiver { run }));
+    Ok(())
+}
+
+/// Looks among `pieces` at the records that no row names.
+fn at_unnamed(
+    folder: &Folder,
+    pieces: &[Piece],
+    snapshot: &Snapshot,
+    checked: &mut Checked,
+) -> Result<(), StoreError> {
+    let (blobs, named) = (folder.blobs(), snapshot.named_evidence()?);
+    let mut unnamed = Vec::new();
+    for found in blobs.each_unnamed_record(pieces, &named) {
+        match found {
+            Ok(record) => unnamed.push(record),
+            Err(error) => checked.faults.push(Fault::Piece(error)),
+        }
+    }
+    checked.superseded = superseded::superseded(&blobs, &unnamed, snapshot)?;
+    checked.faults.extend(without_row(unnamed, snapshot)?);
+    Ok(())
 }
 
 /// What is among the plans in `folder` and may lead out of it, whatever the version of its database.

@@ -14,6 +14,7 @@ use crate::clock;
 use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
+use crate::said::Said;
 use crate::store::{Folder, Store};
 
 /// Copy all that the station has kept to a new folder, while runs go on
@@ -32,7 +33,7 @@ pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
     let copied = kept::backup(&arguments.data.folder(), &arguments.to)?;
     let faults: Vec<_> = match kept::faults(&Folder::new(&arguments.to)) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
-        Err(error) => vec![error.to_string()],
+        Err(error) => vec![Said::of(&error).to_string()],
     };
     let to = arguments.to.display();
     let (runs, pieces) = (count(copied.runs, "run"), count(copied.evidence, "piece"));

@@ -46,6 +46,7 @@ codes::codes! {
         Differs [table, key, column, stored, rebuilt] => "table-row-differs",
         Missing [table, key] => "table-row-missing",
         Surplus [table, key] => "table-row-surplus",
+        = Piece,
     }
     ;
     Superseded [run, row, sha256, verdict] => "run-record-superseded"

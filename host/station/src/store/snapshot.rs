@@ -1,6 +1,7 @@
 //! The tables as they are at one moment, and as they come out when they are made anew from the records.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use halfrow::result::sha256;
@@ -146,8 +147,8 @@ impl Snapshot {
         matches!(&self.of, Of::Station(folder) if folder.blobs().path(hash).is_file())
     }
 
-    /// What SQLite itself finds wrong with its file, and the columns that are missing, which it does not notice because it knows
-    /// only the names in that file; nothing when all is well.
+    /// What SQLite itself finds wrong with its file, and the tables and columns that are missing, which it does not notice because
+    /// it knows only the names in that file; nothing when all is well.
     ///
     /// # Errors
     /// [`StoreError`] when it cannot even look.
@@ -156,9 +157,15 @@ impl Snapshot {
             self.read("to be checked", |reader| reader.all("PRAGMA integrity_check", &[], |row| row.get(0)))?;
         let wrong = said.into_iter().filter(|line| line != "ok");
         let here = self.read("to tell its columns", columns)?;
-        let mut right = columns(&mut *Rebuilt::new()?.database).map_err(refused)?;
-        right.retain(|column| !here.contains(column));
-        Ok(wrong.chain(right.into_iter().map(|column| format!("there is no {column}"))).collect())
+        let right = columns(&mut *Rebuilt::new()?.database).map_err(refused)?;
+        let lost = right.into_iter().flat_map(|(table, columns)| match here.get(&table) {
+            None => vec![table],
+            Some(here) => {
+                let lost = columns.into_iter().filter(|column| !here.contains(column));
+                lost.map(|column| format!("{table}.{column}")).collect()
+            }
+        });
+        Ok(wrong.chain(lost.map(|name| format!("there is no {name}"))).collect())
     }
 
     /// The ids of all runs that are over, with the hashes of their records, the earliest first.
@@ -226,11 +233,15 @@ impl Snapshot {
     }
 }
 
-/// Every column of every table, as `retest.unit_id`.
-fn columns(database: &mut dyn Database) -> Result<Vec<String>, DatabaseError> {
-    const COLUMNS: &str = "SELECT tables.name || '.' || columns.name \
-        FROM sqlite_schema AS tables, pragma_table_info(tables.name) AS columns WHERE tables.type = 'table' ORDER BY 1";
-    database.all(COLUMNS, &[], |row| row.get(0))
+/// The columns of every table.
+fn columns(database: &mut dyn Database) -> Result<BTreeMap<String, Vec<String>>, DatabaseError> {
+    const COLUMNS: &str = "SELECT tables.name, columns.name \
+        FROM sqlite_schema AS tables, pragma_table_info(tables.name) AS columns WHERE tables.type = 'table' ORDER BY 1, 2";
+    let mut columns = BTreeMap::<_, Vec<_>>::new();
+    for (table, column) in database.all(COLUMNS, &[], |row| Ok((row.get::<String>(0)?, row.get(1)?)))? {
+        columns.entry(table).or_default().push(column);
+    }
+    Ok(columns)
 }
 
 /// Tables that are made anew: in memory, and beyond 64 MiB in a temporary file.

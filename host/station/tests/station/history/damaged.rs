@@ -2,10 +2,36 @@
 
 use std::fs;
 
+use halfrow_station::check::{Fault, check};
 use halfrow_station::store::{Folder, Snapshot, Store};
+use rusqlite::Connection;
 
+use super::commands::did;
 use super::made::{End, Made, Run};
 use super::put_back::killed;
+use crate::common::query;
+
+/// A station with a run of each verdict that counts, after these statements were executed in its database.
+fn changed(statements: &str) -> Made {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::Pass));
+    made.run(&Run { lane: "2".to_owned(), ..Run::of("S2", End::Fail(&["memory"])) });
+    Connection::open(made.folder().database()).unwrap().execute_batch(statements).unwrap();
+    made
+}
+
+/// What `check` says of a database that is damaged, and how many other faults it has.
+fn told(made: &Made) -> (Vec<String>, usize) {
+    let mut faults = check(&made.folder()).unwrap().faults;
+    let count = faults.len();
+    faults.retain(|fault| matches!(fault, Fault::Database { .. }));
+    let others = count - faults.len();
+    (faults.iter().map(ToString::to_string).collect(), others)
+}
+
+fn damaged(what: &str) -> String {
+    format!("the database is damaged ({what}); restore it from a copy")
+}
 
 /// SQLite would remove the log of a database without a page, with all runs that are only there.
 #[test]
@@ -34,5 +60,24 @@ fn a_log_beside_a_database_that_is_empty_or_cut_off_stays_as_it_is() {
             assert!(refused.contains(said), "{refused}");
         }
         assert!(files() == before, "{} bytes, {has_evidence}", database.len());
+    }
+}
+
+/// Whoever sees only the table would restore the database, and find the record wrong in the next check.
+#[test]
+fn a_table_that_is_lost_hides_no_record_that_is_damaged() {
+    let made = changed("DROP TABLE retest");
+    assert_eq!(told(&made), (vec![damaged("there is no retest")], 0));
+    let record = query(made.as_ref(), "SELECT record_sha256 FROM run WHERE verdict = 'FAIL'").remove(0);
+    fs::write(made.folder().blobs().path(&record), "other").unwrap();
+    let (code, said, complained) = did(&made, &["check"]);
+    let is_told = |said: &str| said.contains(&damaged("there is no retest")) && said.contains("other bytes");
+    assert!(code == 3 && is_told(&said), "{said}{complained}");
+    let place = tempfile::tempdir().unwrap();
+    let (code, said, _) = did(&made, &["backup", place.path().join("copy").to_str().unwrap()]);
+    assert!(code == 3 && said.contains(&damaged("there is no retest")), "{said}");
+    for table in ["run", "attachment", "waiver", "audit"] {
+        let made = changed(&format!("PRAGMA foreign_keys = OFF; DROP TABLE {table}"));
+        assert_eq!(told(&made), (vec![damaged(&format!("there is no {table}"))], 0));
     }
 }

@@ -9,7 +9,7 @@ use nix::unistd::geteuid;
 
 use super::made::{End, Made, Run};
 use super::put_back::killed;
-use crate::common::{Did, folder, program};
+use crate::common::{Did, folder, program, query};
 
 /// A folder to which nobody may write until this is dropped, except for root.
 struct ReadOnly<'a>(&'a Path);
@@ -22,12 +22,7 @@ impl<'a> ReadOnly<'a> {
 
     /// What this call does as a user who is not root, or has given up what root may.
     fn call(&self, program: &Path, arguments: &[&str]) -> Did {
-        let mut call = Command::new(program);
-        if geteuid().is_root() {
-            call = Command::new("setpriv");
-            call.args(["--bounding-set=-dac_override", "--inh-caps=-dac_override", "--"]).arg(program);
-        }
-        call.args(arguments).arg(self.0).output().unwrap().into()
+        as_others(program).args(arguments).arg(self.0).output().unwrap().into()
     }
 
     fn history(&self) -> Did {
@@ -40,6 +35,21 @@ impl Drop for ReadOnly<'_> {
         // What cannot be removed then stays.
         let _ = fs::set_permissions(self.0, Permissions::from_mode(0o755));
     }
+}
+
+/// This program for a user who is not root, or has given up what root may.
+fn as_others(program: &Path) -> Command {
+    if !geteuid().is_root() {
+        return Command::new(program);
+    }
+    let mut call = Command::new("setpriv");
+    call.args([
+        "--bounding-set=-dac_override,-dac_read_search",
+        "--inh-caps=-dac_override,-dac_read_search",
+        "--",
+    ]);
+    call.arg(program);
+    call
 }
 
 /// The name of the folder has letters that mean something in a URI.
@@ -80,4 +90,27 @@ fn a_log_that_cannot_be_read_in_its_folder_is_not_passed_over() {
     let history =
         Did::from(Command::new(program()).args(["history", "--data"]).arg(copy.path()).output().unwrap());
     assert!(history.code == Some(0) && history.said.contains("S1"), "{history:?}");
+}
+
+/// Evidence that only another user may read need not be wrong, and does not hide what is.
+#[test]
+fn what_may_not_be_read_is_told_with_all_the_rest() {
+    let mut made = Made::new();
+    let ends = [("1", End::Pass), ("2", End::Fail(&["memory"])), ("3", End::Pass)];
+    ends.map(|(lane, end)| made.run(&Run { lane: lane.to_owned(), ..Run::of(lane, end) }));
+    let records = query(made.as_ref(), "SELECT record_sha256 FROM run ORDER BY lane");
+    let unnamed = made.folder().blobs().put(b"nobody's").unwrap();
+    let path = |hash: &str| made.folder().blobs().path(hash);
+    for hash in [&records[0], &unnamed] {
+        fs::set_permissions(path(hash), Permissions::from_mode(0o000)).unwrap();
+    }
+    fs::write(path(&records[1]), "damaged").unwrap();
+    let check =
+        Did::from(as_others(program()).args(["check", "--data"]).arg(made.as_ref()).output().unwrap());
+    let faults: Vec<_> = check.said.lines().filter(|line| line.starts_with("fault: ")).collect();
+    let of_file = |hash: &str| faults.iter().find(|line| line.contains(&path(hash).display().to_string()));
+    for hash in [&records[0], &unnamed] {
+        assert!(of_file(hash).is_some(), "{check:?}");
+    }
+    assert!(check.code == Some(3) && of_file(&records[1]).is_some(), "{check:?}");
 }
