@@ -27,7 +27,7 @@ pub enum BlobError {
     #[error(transparent)]
     Write(#[from] WriteAsideError),
     /// A file of evidence could not be read.
-    #[error("{} cannot be read; put the file of that name from a copy of the station's folder there", path.display())]
+    #[error("{} cannot be read; {}", path.display(), remedy(source))]
     Read {
         /// The file.
         path: PathBuf,
@@ -46,6 +46,15 @@ pub enum BlobError {
         /// The hash of what is there.
         found: String,
     },
+}
+
+/// What to do about a file that cannot be read. One that is another user's need not be wrong.
+fn remedy(source: &io::Error) -> &'static str {
+    if source.kind() == io::ErrorKind::PermissionDenied {
+        "this user may not read it: use that of the station, to whom everything in its folder must belong"
+    } else {
+        "put the file of that name from a copy of the station's folder there"
+    }
 }
 
 impl BlobError {

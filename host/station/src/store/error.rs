@@ -304,12 +304,8 @@ impl StoreError {
 
     /// Whether this one record cannot be read, and the rest of the store may be well.
     #[must_use]
-    pub(crate) fn is_of_record(&self) -> bool {
-        match self {
-            Self::Blob(error) => !error.is_withheld(),
-            Self::Record(_) | Self::NoRecord { .. } => true,
-            _ => false,
-        }
+    pub(crate) const fn is_of_record(&self) -> bool {
+        matches!(self, Self::Blob(_) | Self::Record(_) | Self::NoRecord { .. })
     }
 
     /// Whether the plant can never store what it was given.

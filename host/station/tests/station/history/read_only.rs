@@ -92,12 +92,12 @@ fn a_log_that_cannot_be_read_in_its_folder_is_not_passed_over() {
     assert!(history.code == Some(0) && history.said.contains("S1"), "{history:?}");
 }
 
-/// Evidence that only another user may read need not be wrong, and does not hide what is.
+/// Evidence that only another user may read need not be wrong, and hides neither what is nor the other runs.
 #[test]
 fn what_may_not_be_read_is_told_with_all_the_rest() {
     let mut made = Made::new();
     let ends = [("1", End::Pass), ("2", End::Fail(&["memory"])), ("3", End::Pass)];
-    ends.map(|(lane, end)| made.run(&Run { lane: lane.to_owned(), ..Run::of(lane, end) }));
+    let runs = ends.map(|(lane, end)| made.run(&Run { lane: lane.to_owned(), ..Run::of(lane, end) }));
     let records = query(made.as_ref(), "SELECT record_sha256 FROM run ORDER BY lane");
     let unnamed = made.folder().blobs().put(b"nobody's").unwrap();
     let path = |hash: &str| made.folder().blobs().path(hash);
@@ -110,7 +110,16 @@ fn what_may_not_be_read_is_told_with_all_the_rest() {
     let faults: Vec<_> = check.said.lines().filter(|line| line.starts_with("fault: ")).collect();
     let of_file = |hash: &str| faults.iter().find(|line| line.contains(&path(hash).display().to_string()));
     for hash in [&records[0], &unnamed] {
-        assert!(of_file(hash).is_some(), "{check:?}");
+        let told = of_file(hash).unwrap_or_else(|| panic!("{check:?}"));
+        assert!(told.contains("this user may not read") && !told.contains("copy"), "{told}");
     }
     assert!(check.code == Some(3) && of_file(&records[1]).is_some(), "{check:?}");
+    let place = folder();
+    let to = place.path().join("out");
+    let mut export = as_others(program());
+    export.args(["export", "--to"]).arg(&to).arg("--data").arg(made.as_ref());
+    let export = Did::from(export.output().unwrap());
+    assert!(export.code == Some(3) && export.said.starts_with("1 run is in "), "{export:?}");
+    assert_eq!([0, 1, 2].map(|place| export.complained.contains(&runs[place])), [true, true, false]);
+    assert!(to.join(format!("{}.json", runs[2])).is_file());
 }
