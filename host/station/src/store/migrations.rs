@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::iter;
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
 use halfrow::result::sha256;
@@ -105,9 +106,10 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
     let unfinished = [path.with_extension(format!("before-{version}.partial-journal")), aside.clone()];
     unfinished.iter().try_for_each(|left| remove(left)).map_err(refused)?;
-    let copied = database
-        .execute("VACUUM INTO $1", values![&*aside.to_string_lossy()])
-        .map_err(|source| StoreError::of_file(path, "a copy before a new version", source));
+    let copied = for_the_same(path, &aside).map_err(refused).and_then(|()| {
+        let copied = database.execute("VACUUM INTO $1", values![&*aside.to_string_lossy()]);
+        copied.map_err(|source| StoreError::of_file(path, "a copy before a new version", source))
+    });
     let named = copied.and_then(|_| {
         generation::remove(&aside)?;
         File::open(&aside).and_then(|file| file.sync_all()).map_err(refused)?;
@@ -122,6 +124,12 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
     }
     named?;
     Ok(synced(folder)?)
+}
+
+/// Makes the empty file `aside`, which whoever may read the file `path` may read, and nobody else, whatever the umask.
+fn for_the_same(path: &Path, aside: &Path) -> io::Result<()> {
+    let file = File::options().write(true).create_new(true).mode(0o600).open(aside)?;
+    file.set_permissions(fs::metadata(path)?.permissions())
 }
 
 /// The name for the copy in `aside`. It is not that of a different copy, which may be all that is left of an earlier state.

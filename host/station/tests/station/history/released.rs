@@ -2,6 +2,7 @@
 //! databases are in the folder `released`; its README.md says how they were made.
 
 use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -233,6 +234,8 @@ fn a_backup_of_an_earlier_program_is_restored_into_a_folder_that_is_there() {
     let (code, said, complained) = did(&data, &["restore", backup.path().to_str().unwrap()]);
     assert_eq!((code, complained.as_str()), (0, ""), "{said}");
     assert_eq!(fs::read_to_string(data.path().join("station.lock")).unwrap(), "");
+    let earlier = fs::metadata(data.path().join("station.before-2.db")).unwrap();
+    assert_eq!(earlier.permissions().mode() & 0o777, 0o600);
     is_true_of(data.path());
     let (code, _, complained) = did(&data, &["prune", "--operator", "weber"]);
     assert_eq!((code, complained.as_str()), (0, ""));
