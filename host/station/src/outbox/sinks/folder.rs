@@ -1,12 +1,12 @@
 //! A folder as a sink: a file for each run and each waiver.
 
-use std::fs::{self, Permissions};
+use std::fs::{self, File, Permissions};
 use std::io;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use halfrow::files::written_aside::{WriteAsideError, clear_older, write_aside};
+use halfrow::files::written_aside::{WriteAsideError, clear_older, sync_folder, write_aside};
 
 use super::SinkError;
 use super::letter::letter;
@@ -37,7 +37,14 @@ impl FolderSink {
         }
         let path = self.folder.join(letter.id + letter.ending);
         match write_aside(&path, false, |file| file.write_all(&letter.bytes)) {
-            Err(WriteAsideError::Exists { .. }) => is_as(&path, &letter.bytes)?,
+            Err(WriteAsideError::Exists { .. }) => {
+                is_as(&path, &letter.bytes)?;
+                // A program that was killed may have left it without bringing its name to the disk.
+                let synced = File::open(&path).and_then(|file| file.sync_all());
+                let synced = synced.and_then(|()| sync_folder(&self.folder));
+                synced
+                    .map_err(|source| self.unwritten(WriteAsideError::Io { path: path.clone(), source }))?;
+            }
             written => written.map_err(|error| self.unwritten(error))?,
         }
         self.open_to_readers(&path);

@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime};
 
 use halfrow_station::store::Folder;
 
-use super::{did, send, settings};
+use super::{SEND, did, send, settings};
 use crate::common::{Did, NO_AUDIT, program, query};
 use crate::history::made::Made;
 use crate::history::released::history;
@@ -147,9 +147,17 @@ fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() 
     database.execute("DELETE FROM outbox", []).unwrap();
     drop(database);
     let modified = fs::metadata(&other).unwrap().modified().unwrap();
-    let again = send(folder.path(), &sink);
+    let trace = folder.path().join("trace");
+    let mut again = Command::new("strace");
+    again.args(["-f", "-y", "-e", "trace=fsync", "-o"]).arg(&trace).arg(program()).args(SEND);
+    let again = Did::from(again.arg("--settings").arg(folder.path().join("station.toml")).output().unwrap());
     assert!(again.said.contains(" sent, 0 not"), "{again:?}");
     assert_eq!(fs::metadata(&other).unwrap().modified().unwrap(), modified);
+    // A program that was killed may have left it without its name on the disk.
+    let trace = fs::read_to_string(trace).unwrap();
+    for synced in [&other, &share] {
+        assert!(trace.contains(&format!("<{}>)", synced.display())), "{}: {trace}", synced.display());
+    }
 }
 
 /// The run is sent once its record is put back; those after it do not wait for that.
