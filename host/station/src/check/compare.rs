@@ -1,6 +1,7 @@
 //! Compares a table with its rebuilt copy.
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 use super::Fault;
 use crate::store::{Key, Row, Rows, StoreError};
@@ -37,13 +38,27 @@ pub(super) fn compare(
     }
 }
 
-/// Adds a fault for each column in which the two rows differ.
+/// Adds a fault for each column in which the two rows differ, and one alone for a column that the table has lost.
 fn differing(table: &'static str, key: &Key, stored: Row, rebuilt: Row, faults: &mut Vec<Fault>) {
-    let differing = stored.into_iter().zip(rebuilt).filter(|(stored, rebuilt)| stored != rebuilt);
-    faults.extend(differing.map(|((column, stored), (_, rebuilt))| {
-        let key = text(key);
-        Fault::Differs { table, key, column, stored, rebuilt }
-    }));
+    if stored == rebuilt {
+        return;
+    }
+    let mut stored: BTreeMap<_, _> = stored.into_iter().collect();
+    for (column, rebuilt) in rebuilt {
+        match stored.remove(&column) {
+            None => lost(&format!("{table}.{column}"), faults),
+            Some(stored) if stored == rebuilt => {}
+            Some(stored) => faults.push(Fault::Differs { table, key: text(key), column, stored, rebuilt }),
+        }
+    }
+}
+
+/// Adds the fault that the column `name` is lost, unless it was told.
+fn lost(name: &str, faults: &mut Vec<Fault>) {
+    let said = format!("there is no {name}");
+    if !faults.iter().any(|fault| matches!(fault, Fault::Database { said: told } if *told == said)) {
+        faults.push(Fault::Database { said });
+    }
 }
 
 fn text(key: &Key) -> String {

@@ -81,3 +81,11 @@ fn a_table_that_is_lost_hides_no_record_that_is_damaged() {
         assert_eq!(told(&made), (vec![damaged(&format!("there is no {table}"))], 0));
     }
 }
+
+#[test]
+fn a_column_that_is_lost_is_one_fault_however_many_stand_after_it() {
+    assert_eq!(
+        told(&changed("ALTER TABLE run DROP COLUMN build")),
+        (vec![damaged("there is no run.build")], 0)
+    );
+}
