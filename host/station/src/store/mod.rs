@@ -25,6 +25,7 @@ mod reason;
 mod retention;
 mod retest_policy;
 mod rows;
+mod shape;
 mod shared_store;
 mod shift;
 mod snapshot;

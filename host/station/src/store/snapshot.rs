@@ -1,7 +1,6 @@
 //! The tables as they are at one moment, and as they come out when they are made anew from the records.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use halfrow::result::sha256;
@@ -9,6 +8,7 @@ use halfrow::result::sha256;
 use rusqlite::Connection;
 
 use super::database::{Database, DatabaseError, Engine, Row as Found, Sqlite, Value, values};
+use super::shape::Shape;
 use super::table::{Rows, page};
 use super::{
     Folder, OpenRun, Plant, Rebinding, StoreError, Stored, bindings, folder, generation, migrations,
@@ -147,8 +147,8 @@ impl Snapshot {
         matches!(&self.of, Of::Station(folder) if folder.blobs().path(hash).is_file())
     }
 
-    /// What SQLite itself finds wrong with its file, and the tables and columns that are missing, which it does not notice because
-    /// it knows only the names in that file; nothing when all is well.
+    /// What SQLite itself finds wrong with its file, and the tables, columns and indices that are missing, which it does not notice
+    /// because it knows only the names in that file; nothing when all is well.
     ///
     /// # Errors
     /// [`StoreError`] when it cannot even look.
@@ -156,16 +156,9 @@ impl Snapshot {
         let said: Vec<String> =
             self.read("to be checked", |reader| reader.all("PRAGMA integrity_check", &[], |row| row.get(0)))?;
         let wrong = said.into_iter().filter(|line| line != "ok");
-        let here = self.read("to tell its columns", columns)?;
-        let right = columns(&mut *Rebuilt::new()?.database).map_err(refused)?;
-        let lost = right.into_iter().flat_map(|(table, columns)| match here.get(&table) {
-            None => vec![table],
-            Some(here) => {
-                let lost = columns.into_iter().filter(|column| !here.contains(column));
-                lost.map(|column| format!("{table}.{column}")).collect()
-            }
-        });
-        Ok(wrong.chain(lost.map(|name| format!("there is no {name}"))).collect())
+        let here = self.read("to tell its tables", Shape::of)?;
+        let right = Shape::of(&mut *Rebuilt::new()?.database).map_err(refused)?;
+        Ok(wrong.chain(right.lost_in(&here)).collect())
     }
 
     /// The ids of all runs that are over, with the hashes of their records, the earliest first.
@@ -231,17 +224,6 @@ impl Snapshot {
         read(&mut **self.reader.borrow_mut())
             .map_err(|source| StoreError::refused(engine, &place, doing, source))
     }
-}
-
-/// The columns of every table.
-fn columns(database: &mut dyn Database) -> Result<BTreeMap<String, Vec<String>>, DatabaseError> {
-    const COLUMNS: &str = "SELECT tables.name, columns.name \
-        FROM sqlite_schema AS tables, pragma_table_info(tables.name) AS columns WHERE tables.type = 'table' ORDER BY 1, 2";
-    let mut columns = BTreeMap::<_, Vec<_>>::new();
-    for (table, column) in database.all(COLUMNS, &[], |row| Ok((row.get::<String>(0)?, row.get(1)?)))? {
-        columns.entry(table).or_default().push(column);
-    }
-    Ok(columns)
 }
 
 /// Tables that are made anew: in memory, and beyond 64 MiB in a temporary file.

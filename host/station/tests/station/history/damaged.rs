@@ -3,6 +3,7 @@
 use std::fs;
 
 use halfrow_station::check::{Fault, check};
+use halfrow_station::kept::{CopyError, backup, faults, restore};
 use halfrow_station::store::{Folder, Snapshot, Store};
 use rusqlite::Connection;
 
@@ -88,4 +89,26 @@ fn a_column_that_is_lost_is_one_fault_however_many_stand_after_it() {
         told(&changed("ALTER TABLE run DROP COLUMN build")),
         (vec![damaged("there is no run.build")], 0)
     );
+}
+
+/// Two runs of one unit, or in one lane, would be open at once, and nothing would say so.
+#[test]
+fn an_index_that_is_lost_or_another_one_is_a_fault_and_is_not_restored() {
+    for (statements, said) in [
+        ("DROP INDEX run_open_unit", "there is no index run_open_unit"),
+        (
+            "DROP INDEX run_open_lane; CREATE INDEX run_open_lane ON run (station, lane) WHERE state = 'open'",
+            "the index run_open_lane is another one",
+        ),
+    ] {
+        let made = changed(statements);
+        assert_eq!(told(&made), (vec![damaged(said)], 0));
+        let place = tempfile::tempdir().unwrap();
+        let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
+        backup(&made.folder(), &copy).unwrap();
+        assert_eq!(faults(&Folder::new(&copy)).unwrap().len(), 1);
+        assert!(matches!(restore(&Folder::new(&copy), &again), Err(CopyError::Faulty { faults: 1, .. })));
+    }
+    // What somebody adds to look something up faster is in nobody's way.
+    assert_eq!(told(&changed("CREATE INDEX mine ON run (headline)")), (Vec::new(), 0));
 }
