@@ -23,6 +23,7 @@ pub(crate) mod served;
 mod units;
 mod unnamed;
 mod untested;
+mod upgraded;
 mod waivers;
 mod wilson;
 mod yields;

@@ -37,7 +37,7 @@ fn for_sqlite(text: &str) -> String {
     text.replace("{int}", "INTEGER").replace("{real}", "REAL").replace("{strict}", " STRICT")
 }
 
-fn newest() -> usize {
+pub(super) fn newest() -> usize {
     (1..).take_while(|number| schema(*number).is_some()).count()
 }
 
@@ -46,7 +46,7 @@ fn released(number: usize) -> PathBuf {
 }
 
 /// A station's folder as a program with this schema left it.
-fn left(number: usize) -> TempDir {
+pub(super) fn left(number: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let database = Connection::open(folder.path().join("station.db")).unwrap();
     let text = fs::read_to_string(released(number).join("database.sql")).unwrap();
