@@ -21,7 +21,7 @@ const DEFAULT: usize = 2048;
 const FAULTS: [(&str, &[(&str, Values)]); 6] = [
     ("stuck-data", &[("bit", Values::From(0, 7)), ("value", Values::From(0, 1))]),
     ("dead-tap", &[("tap", Values::From(0, 6))]),
-    ("row-factor,hidden=true", &[("row", Values::Row), ("bit", Values::From(10, 23))]),
+    ("row-factor,hidden=true", &[("row", Values::Entry), ("bit", Values::From(10, 23))]),
     ("kernel-word,hidden=true", &[("node", Values::From(0, 64)), ("bit", Values::From(8, 14))]),
     ("tap-offset", &[("columns", Values::Word(&["-3", "-2", "-1", "1", "2", "3"]))]),
     ("no-rounding", &[]),
@@ -32,8 +32,8 @@ const FAULTS: [(&str, &[(&str, Values)]); 6] = [
 enum Values {
     /// Whole numbers from the first to the second.
     From(u64, u64),
-    /// A row of the frames.
-    Row,
+    /// An entry of the row table or the grid.
+    Entry,
     /// One of these.
     Word(&'static [&'static str]),
 }
@@ -76,13 +76,15 @@ fn room(selected: &Selected) -> String {
 #[must_use]
 pub fn target(seed: u64, selected: &Selected) -> String {
     let mut drawn = Drawn(seed);
-    let rows = tables(selected).map(|tables| tables.geometry().height() as u64).min().unwrap_or(1);
+    // A coarse grid has fewer entries than its frame has rows.
+    let entries = tables(selected).map(|tables| tables.entries().len().min(tables.geometry().height()));
+    let entries = entries.min().unwrap_or(1) as u64;
     let Some((name, parameters)) = FAULTS.get(drawn.below(FAULTS.len() as u64) as usize) else {
         return "mock".to_owned();
     };
     let mut value = |values| match values {
         Values::From(least, most) => (least + drawn.below(most - least + 1)).to_string(),
-        Values::Row => drawn.below(rows).to_string(),
+        Values::Entry => drawn.below(entries).to_string(),
         Values::Word(words) => {
             words.get(drawn.below(words.len() as u64) as usize).copied().unwrap_or_default().to_owned()
         }
