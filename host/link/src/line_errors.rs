@@ -17,12 +17,13 @@ pub struct LineErrors {
     pub breaks: u64,
 }
 
+/// Saturates: a damaged recording may hold any counts.
 impl std::ops::AddAssign for LineErrors {
     fn add_assign(&mut self, more: Self) {
-        self.overrun += more.overrun;
-        self.parity += more.parity;
-        self.framing += more.framing;
-        self.breaks += more.breaks;
+        self.overrun = self.overrun.saturating_add(more.overrun);
+        self.parity = self.parity.saturating_add(more.parity);
+        self.framing = self.framing.saturating_add(more.framing);
+        self.breaks = self.breaks.saturating_add(more.breaks);
     }
 }
 
@@ -30,7 +31,7 @@ impl LineErrors {
     /// Their total.
     #[must_use]
     pub fn sum(self) -> u64 {
-        self.overrun + self.parity + self.framing + self.breaks
+        [self.parity, self.framing, self.breaks].into_iter().fold(self.overrun, u64::saturating_add)
     }
 
     /// What to do about them if nothing could be judged.

@@ -178,6 +178,10 @@ mod tests {
             assert_eq!(replay.exchange(b"request", &mut incoming, Duration::ZERO).unwrap(), 7);
             assert_eq!((incoming.as_slice(), replay.line_errors()), (b"answer".as_slice(), errors));
         }
+        // A recording may hold any counts.
+        let mut twice = replay.line_errors();
+        twice += replay.line_errors();
+        assert_eq!((twice.breaks, twice.parity, twice.sum()), (u64::MAX, 6, u64::MAX));
         let ended = replay.exchange(b"request", &mut Vec::new(), Duration::ZERO);
         assert!(matches!(ended, Err(LinkError::RecordingEnds { .. })));
     }
