@@ -17,6 +17,7 @@ mod counters;
 mod doubled;
 mod echoes;
 mod exercised;
+mod floods;
 mod framed;
 mod kept_rows;
 mod late_answers;

@@ -6,6 +6,7 @@ mod retry;
 mod silence;
 mod unclosed;
 
+use std::mem;
 use std::time::Duration;
 
 use halfrow_protocol::message::{Request, RowIn, RowPlace};
@@ -22,7 +23,9 @@ use crate::link::{ClosedLink, Link, LinkError};
 use unclosed::Unclosed;
 
 /// The most that an exchange which moved bytes adds to the time waited. An exchange returns as soon as a byte has moved. If it
-/// took longer, the host may have been kept from running, and what it has not read yet is not held against the board.
+/// took longer, the host may have been kept from running, and what it has not read yet is not held against the board. Nor is more
+/// of the time added that the host took for these bytes: without that, a peer that sends faster than the host reads would never be
+/// late.
 const BRIEF: Duration = Duration::from_millis(50);
 
 /// How far a board's window can be ahead of the rows that came back: the most banks in each direction, and two rows in the core.
@@ -72,6 +75,8 @@ pub(super) struct Conversation {
     /// The time spent waiting for the link, by which deadlines are measured. While the host is kept from running, or is busy
     /// elsewhere, it cannot tell that a board is late.
     pub(super) waited: Duration,
+    /// The time spent on what the last exchange brought, which is added with that of the next one.
+    spent: Duration,
     /// What the board counts of the packets sent.
     pub(super) counted: Counted,
     /// Whether to ask for that count wherever a packet may have been lost unnoticed.
@@ -97,6 +102,7 @@ impl Conversation {
             unclosed: Unclosed::default(),
             limit: options.retry_limit,
             waited: Duration::ZERO,
+            spent: Duration::ZERO,
             counted: Counted::default(),
             counts: options.counts,
             lateness: Lateness::default(),
@@ -144,9 +150,13 @@ impl Conversation {
         self.link.is_exclusive()
     }
 
-    /// Runs `act`, during which only a deadline ends a wait.
+    /// Runs `act`, which is a [`Step::Close`]: whatever was to stop the run, it goes on for its tries, and no longer than twice as
+    /// long as these take, since a peer that sends without end stretches them.
     pub(super) fn disregarding_stop<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
-        let stop = std::mem::take(&mut self.stop);
+        let tries = self.wait_for(Step::Close, 0, self.queued() + halfrow_protocol::MAX_PACKET)
+            * Step::Close.deadline().attempts;
+        let last = Stop::default().link_limit(Some(self.now() + 2 * tries));
+        let stop = mem::replace(&mut self.stop, last);
         let done = act(self);
         self.stop = stop;
         done
@@ -154,7 +164,7 @@ impl Conversation {
 
     /// Runs `act` under the number of another session, or under none if it is 0, then returns to the open one.
     pub(super) fn under_session<T>(&mut self, session: u8, act: impl FnOnce(&mut Self) -> T) -> T {
-        let own = std::mem::replace(&mut self.session.number, session);
+        let own = mem::replace(&mut self.session.number, session);
         let done = act(self);
         self.session.number = own;
         done
@@ -168,6 +178,11 @@ impl Conversation {
     /// How long to wait at the try `attempt`, from 0, if `bytes` have to travel, both ways together.
     pub(super) fn wait_for(&self, step: Step, attempt: u32, bytes: usize) -> Duration {
         step.wait(attempt, bytes, self.link.bytes_per_second(), self.lateness.longest())
+    }
+
+    /// Adds none of the time that the last exchange's bytes took to the time waited.
+    pub(super) fn forget_spent(&mut self) {
+        self.spent = Duration::ZERO;
     }
 
     /// Bytes that are waiting to be written.
@@ -235,14 +250,15 @@ impl Conversation {
         self.lateness.note_needless(took);
     }
 
-    /// Moves bytes both ways, at most for `wait`, and counts them and the time.
+    /// Moves bytes both ways, at most for `wait`, and counts them and the time. A recording, whose clock stands still between its
+    /// exchanges, counts what was spent there with the next one too.
     fn move_bytes(&mut self, wait: Duration) -> Result<(), LinkError> {
         self.incoming.clear();
         let begun = self.link.now();
         let moved = self.link.exchange(&self.outgoing, &mut self.incoming, wait);
         let is_idle = self.incoming.is_empty() && matches!(moved, Ok(0));
         let counts = if is_idle { wait } else { wait.min(BRIEF) };
-        self.waited += self.since(begun).min(counts);
+        self.waited += (self.since(begun) + mem::take(&mut self.spent)).min(counts);
         self.tally.line_errors = self.link.line_errors();
         let taken = moved?;
         self.outgoing.drain(..taken);
@@ -292,6 +308,9 @@ impl Conversation {
                     }
                 }
             }
+        }
+        if !self.incoming.is_empty() {
+            self.spent = self.since(now).min(BRIEF);
         }
         strays.into_iter().for_each(|stray| self.count_stray(stray));
         Ok(())

@@ -143,6 +143,8 @@ impl<'a> Stream<'a> {
 
     /// From now on the oldest missing row is waited for.
     fn go_on(&mut self) {
+        // Judging the row that came is no wait for the next one.
+        self.conversation.forget_spent();
         self.progress_at = self.conversation.waited;
         self.missing_since = self.progress_at;
     }
