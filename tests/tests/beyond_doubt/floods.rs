@@ -76,6 +76,11 @@ impl Link for Flood {
 fn a_request_that_a_flood_does_not_answer_is_given_up() {
     let failed = Board::open(Flood::of(0), &OpenOptions::default()).unwrap_err();
     assert!(matches!(failed.error, BoardError::NoAnswer { kind: Kind::Hello, .. }), "{failed}");
+    let told = failed.to_string();
+    assert!(
+        told.contains("whole packets came, none of them the reply") && !told.contains("before"),
+        "{told}"
+    );
     let failed = Board::open(Flood::of(1), &OpenOptions::default()).unwrap_err();
     assert!(matches!(failed.error, BoardError::NoAnswer { kind: Kind::Capabilities, .. }), "{failed}");
     assert!(failed.to_string().contains("though the board had answered before"), "{failed}");

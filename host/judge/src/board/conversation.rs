@@ -141,9 +141,9 @@ impl Conversation {
 
     /// What came so far, and what may have kept more from coming.
     fn heard(&self) -> Received {
-        let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, .. } = self.tally;
+        let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, answered, .. } = self.tally;
         let waits_for_cts = self.link.waits_for_cts();
-        Received { bytes, packets, damaged, waits_for_cts, ..self.before }
+        Received { bytes, packets, answered, damaged, waits_for_cts, ..self.before }
     }
 
     pub(super) fn is_exclusive(&self) -> bool {

@@ -12,6 +12,8 @@ pub struct Received {
     pub bytes: u64,
     /// Whole packets.
     pub packets: u64,
+    /// Requests that were answered.
+    pub answered: u64,
     /// Packets that came damaged since the session began.
     pub damaged: u64,
     /// Before the session, what was stuffed like a packet and had a wrong CRC.
@@ -72,6 +74,10 @@ pub(super) fn suspect_of_one(had: Had) -> String {
     )
 }
 
+/// What to check where nothing was ever heard.
+const UNHEARD: &str =
+    "; check that the board is powered and loaded, and that the target's rate is the board's";
+
 /// What silence suggests: the board if nothing was ever heard from it, otherwise the connection to it.
 pub(super) fn suspect(heard: Received) -> String {
     match heard {
@@ -80,9 +86,7 @@ pub(super) fn suspect(heard: Received) -> String {
              (a ULX3S does not, and needs flow=none)"
                 .into()
         }
-        Received { bytes: 0, .. } => {
-            "; check that the board is powered and loaded, and that the target's rate is the board's".into()
-        }
+        Received { bytes: 0, .. } => UNHEARD.into(),
         Received { packets: 0, damaged: 0, wrong_length: 1.., bytes, .. } => format!(
             ", though {} came, with packets among them whose CRC is right and whose length is not what their header says: the \
              length counts the payload alone; check the board's packets against protocol/WIRE.md, section 1",
@@ -98,6 +102,12 @@ pub(super) fn suspect(heard: Received) -> String {
             ", though {} came, with no packet among them; check that the target's rate is the board's, and that the \
              device at this port is a halfrow board",
             count(bytes, "byte")
+        ),
+        Received { damaged: 0, answered: 0, packets, .. } => format!(
+            ", though {} came, none of them the reply: they are of another session or for another host; check that nobody else \
+             uses this board, and that its reply has the sequence number and the nonce of the HELLO that it answers \
+             (protocol/WIRE.md, section 3)",
+            count(packets, "whole packet")
         ),
         Received { damaged: 0, .. } => {
             ", though the board had answered before; check the cable, its connectors and the rate, and that \
