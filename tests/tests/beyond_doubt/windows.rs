@@ -54,6 +54,20 @@ fn a_board_that_does_not_go_on_from_the_row_that_a_reset_names_fails() {
     assert_eq!(credit(&report), 0);
 }
 
+/// Too few rows are then in the board at once for any to come back, so the run ends for want of a row.
+#[test]
+fn a_board_that_gives_less_credit_than_it_has_banks_fails() {
+    for less in [BANKS - 1, u32::MAX] {
+        let report = judge_each(&System::TINY, move |toward, mut packet: Passing| {
+            if toward == Toward::Host {
+                packet.header.window = packet.header.window.saturating_sub(less);
+            }
+            packet
+        });
+        assert_eq!(credit(&report), BANKS.saturating_sub(less));
+    }
+}
+
 fn is_without_credit(refusal: &Refusal) -> bool {
     (refusal.kind, refusal.code) == (Kind::RowIn.code(), RefusalCode::Credit)
 }

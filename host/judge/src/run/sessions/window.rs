@@ -1,4 +1,4 @@
-//! Looks at the window of a board that refused a row as beyond it.
+//! Looks at the window of a board that refused a row as beyond it, or did not bring one back however often it was sent.
 
 use halfrow_protocol::Kind;
 
@@ -11,10 +11,11 @@ const TIMES: u32 = 2;
 
 impl Run<'_> {
     /// What the run ends with that ended with `end`. The refusal of a row for want of credit proves nothing: the host may know a
-    /// window from another session, or an old RESET may have taken it down. But no link changes how far ahead a board's own
-    /// answer to a RESET sets the window.
+    /// window from another session, or an old RESET may have taken it down. Nor does a row that does not come back: the window may
+    /// have kept back the row that pushes it out of the core, or the link may lose it. But no link changes how far ahead a board's
+    /// own answer to a RESET sets the window.
     pub(crate) fn told_of_window(&mut self, end: End) -> End {
-        if !end.is_without_credit() {
+        if !end.is_without_credit() && !matches!(end.finding(), Finding::RowLostEachTime(_)) {
             return end;
         }
         let banks = u32::from(self.board.capabilities.row_banks_in);
