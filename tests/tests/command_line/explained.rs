@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use halfrow::result::{BrokenOff, BurstCount, Corner, Counter, Doubt, Finding, Problem, Rule};
 use halfrow_tests::program::{Folder, error_sentence, halfrow};
 
 use crate::small;
@@ -154,6 +155,44 @@ fn what_an_example_s_suspect_asks_for_is_said_to_be_the_example_s() {
         let act = it["do"][0].as_str().unwrap();
         assert!(act.starts_with("See the code of its suspect. In this example: Check "), "{act}");
     }
+}
+
+/// Findings of one code that ask for something else each.
+#[test]
+fn what_depends_on_what_was_found_is_said_to_be_the_example_s() {
+    let corner = Corner { width: 64, height: 8, bits: 8, centre2: 63, grid: false };
+    let timed = Finding::MiscountedAtSpeed { frame: 1, count: BurstCount::MostLatency, counted: 9, right: 8 };
+    let reason =
+        Problem { remedy: Some("Plug it in.".to_owned()), ..Problem::new("link-unplugged", "it is gone") };
+    let found = [
+        Finding::TablesChanged { found: Box::new(timed.clone()) },
+        Finding::InCorner { corner, found: Box::new(Finding::CommitCrcWrong {}) },
+        with_rule(),
+        timed,
+        Finding::BoardStayedAway { reason: Box::new(reason.clone()), seconds: 1.0 },
+        Finding::WrongOverDoubtfulLink {
+            found: Box::new(Finding::EchoWrong {}),
+            doubt: Doubt::AnswerLost {},
+        },
+        Finding::SecondLookBrokenOff(Box::new(BrokenOff {
+            found: Finding::EchoWrong {},
+            doubt: Doubt::AnswerLost {},
+            reason: reason.into(),
+        })),
+    ];
+    for finding in found {
+        let it = &explained(&[&finding.code()])[0];
+        let acts: Vec<_> = it["do"].as_array().unwrap().iter().filter_map(|act| act.as_str()).collect();
+        let others = [finding.remedy(), finding.technician()].into_iter().flatten();
+        let others: Vec<_> = others.filter(|other| !acts.iter().any(|act| act.contains(other))).collect();
+        assert!(!others.is_empty(), "{finding:?}");
+        let next = acts.last().unwrap();
+        assert!(next.contains(". In this example: ") && next.len() > 30, "{acts:?}");
+    }
+}
+
+fn with_rule() -> Finding {
+    Finding::CounterWrong { counter: Counter::RowsOut, counted: 1, right: 2, rule: Some(Rule::Window) }
 }
 
 #[test]

@@ -225,35 +225,55 @@ pub(super) fn all() -> Vec<Value> {
     findings.chain(defects).chain(untouched).chain(errors).chain(others).collect()
 }
 
-/// What the remedy of a wrong latency depends on.
-const BY_ROWS: &str = "This depends on which rows are late. In this example: ";
-
-/// What to do about an example of a finding. If that depends on its suspect, the text says so, since another suspect needs
-/// something else.
+/// What to do about an example of a finding. If another finding of its code may need something else, the text says so.
 pub(super) fn act(example: &Finding) -> Option<String> {
     let remedy = example.remedy()?;
-    Some(match example {
-        _ if is_by_suspect(example) => {
-            format!("See the code of its suspect. In this example: {remedy}")
-        }
-        Finding::LatencyWrong(_) => format!("{BY_ROWS}{remedy}"),
-        _ => remedy,
-    })
+    Some(depending(example).map_or(remedy.clone(), |on| format!("{} In this example: {remedy}", on.words())))
 }
 
-/// What a technician does about it; none if the code of its suspect says that.
+/// What a technician does about it; none if another code says that.
 pub(super) fn bench(example: &Finding) -> Option<String> {
-    let asked = example.technician().filter(|_| !is_by_suspect(example))?;
-    Some(if matches!(example, Finding::LatencyWrong(_)) { format!("{BY_ROWS}{asked}") } else { asked })
+    let asked = example.technician()?;
+    match depending(example) {
+        Some(Depends::Code(_)) => None,
+        Some(on @ Depends::Both(_)) => Some(format!("{} In this example: {asked}", on.words())),
+        Some(Depends::Remedy(_)) | None => Some(asked),
+    }
 }
 
-fn is_by_suspect(example: &Finding) -> bool {
-    matches!(
-        example,
+/// What to do about a finding depends on more than its code.
+enum Depends {
+    /// On another code, which says it.
+    Code(&'static str),
+    /// On this, and so does what a technician does.
+    Both(&'static str),
+    /// On this.
+    Remedy(&'static str),
+}
+
+impl Depends {
+    fn words(&self) -> String {
+        match self {
+            Self::Code(whose) => format!("See the code of {whose}."),
+            Self::Both(what) | Self::Remedy(what) => format!("This depends on {what}."),
+        }
+    }
+}
+
+fn depending(example: &Finding) -> Option<Depends> {
+    Some(match example {
         Finding::TableReadsWrong { .. }
-            | Finding::SamplesDiffer { suspect: Some(_), .. }
-            | Finding::DiffersAtSpeed { suspect: Some(_), .. }
-    )
+        | Finding::SamplesDiffer { suspect: Some(_), .. }
+        | Finding::DiffersAtSpeed { suspect: Some(_), .. } => Depends::Code("its suspect"),
+        Finding::TablesChanged { .. } | Finding::InCorner { .. } => Depends::Code("what was found"),
+        Finding::LatencyWrong(_) => Depends::Both("which rows are late"),
+        Finding::MiscountedAtSpeed { .. } => Depends::Both("what is miscounted"),
+        Finding::CounterWrong { .. } => Depends::Remedy("whether a rule was tried"),
+        Finding::WrongOverDoubtfulLink { .. } => Depends::Remedy("what the link may have done"),
+        Finding::SecondLookBrokenOff(_) => Depends::Remedy("why it broke off"),
+        Finding::BoardStayedAway { .. } => Depends::Remedy("how the board went away"),
+        _ => return None,
+    })
 }
 
 /// The page of all codes, in Markdown.
