@@ -170,6 +170,25 @@ fn of_two_rows_with_each_other_s_numbers_the_earlier_one_left_late() {
     fails(&report, CheckName::Frames, sentence);
 }
 
+/// The link loses the first copy of row 4, and the second one says that it is the first. The board's numbers have room for a packet
+/// where row 4 belongs.
+#[test]
+fn a_board_that_does_not_count_repeats_is_not_said_to_reorder_rows() {
+    for (row, others) in [(4, 0), (0, 0), (4, 1)] {
+        let mut lost = 0;
+        let report = judge(&System::TINY, move |_, packet| match place(&packet) {
+            Some(at) if (row..=row + others).contains(&at.row) && lost <= others => {
+                lost += 1;
+                Vec::new()
+            }
+            Some(_) => vec![changed(&packet, packet.header.sequence, |row, _| row.repeats = 0)],
+            _ => vec![packet],
+        });
+        let sentence = format!("the board sent row {row} of frame 0 twice with `repeats` = 0");
+        fails(&report, CheckName::Frames, &sentence);
+    }
+}
+
 #[test]
 fn gaps_are_compared_with_their_seed() {
     let report = judge_each(&System::TINY, |_, packet| match place(&packet) {

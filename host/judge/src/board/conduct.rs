@@ -32,7 +32,8 @@ pub(crate) enum Misconduct {
         /// The number in both headers.
         number: u16,
     },
-    /// A row was sent twice, by the board's own numbering of its packets, with the same count of repeats both times.
+    /// A row was sent twice, by the board's own numbering of its packets, with the same count of repeats both times. The first of
+    /// them may not have come.
     RepeatsStand {
         /// The row.
         place: RowPlace,
@@ -134,6 +135,27 @@ impl Conduct {
         }
     }
 
+    /// Whether a packet is missing between the rows around `row_sequence` that came, `came` among them: then this row had left in its
+    /// place, the link lost it, and what came is a repeat of it.
+    fn had_room(&self, came: &Came, row_sequence: u32) -> bool {
+        let sequence = |came: &&Came| came.place.row_sequence;
+        let firsts = || self.packets.iter().chain([came]).filter(|came| came.repeats == 0);
+        let below = firsts().filter(|came| sequence(came) < row_sequence).max_by_key(sequence);
+        let above = firsts().filter(|came| sequence(came) > row_sequence).min_by_key(sequence);
+        let late = firsts().rfind(|came| sequence(came) == row_sequence);
+        let (Some(above), Some(late)) = (above, late) else { return false };
+        let is_behind = (1..1 << 15).contains(&late.number.wrapping_sub(above.number));
+        is_behind
+            && match below {
+                Some(below) => {
+                    let rows = above.place.row_sequence - below.place.row_sequence;
+                    u32::from(above.number.wrapping_sub(below.number)) >= rows
+                }
+                // The numbers of a session begin at 0.
+                None => above.number > 0,
+            }
+    }
+
     fn note(&mut self, misconduct: Misconduct) {
         self.misconduct.get_or_insert(misconduct);
     }
@@ -174,7 +196,10 @@ impl Conduct {
         self.came += u32::from(is_new);
         self.doubled += u32::from(!is_new);
         if let Some(place) = self.packets.iter().find_map(|earlier| earlier.misordered(&came)) {
-            self.note(Misconduct::OutOfOrder { place });
+            self.note(match self.had_room(&came, place.row_sequence) {
+                true => Misconduct::RepeatsStand { place, repeats: 0 },
+                false => Misconduct::OutOfOrder { place },
+            });
         }
         if *self.rows.entry(place.row_sequence).or_insert(digest) != digest {
             self.note(Misconduct::CopyDiffers { place });
