@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use halfrow::result::{BrokenOff, BurstCount, Corner, Counter, Doubt, Finding, Problem, Rule};
+use halfrow::result::{BrokenOff, BurstCount, Corner, Counter, Doubt, Finding, Problem, RowsTried, Rule};
 use halfrow_tests::program::{Folder, error_sentence, halfrow};
 
 use crate::small;
@@ -193,6 +193,29 @@ fn what_depends_on_what_was_found_is_said_to_be_the_example_s() {
 
 fn with_rule() -> Finding {
     Finding::CounterWrong { counter: Counter::RowsOut, counted: 1, right: 2, rule: Some(Rule::Window) }
+}
+
+/// Also with those that few findings of their code have.
+#[test]
+fn every_parameter_that_a_report_may_have_is_listed() {
+    let differ = Finding::SamplesDiffer {
+        differences: 1,
+        samples: 64,
+        differing_frames: 1,
+        frames: 1,
+        tried: Some(Box::new(RowsTried { width: 64, height: 1 })),
+        suspect: None,
+        others: 0,
+        short: None,
+    };
+    let all = halfrow(["codes", "--json"]).json();
+    for finding in [with_rule(), differ] {
+        let Problem { code, parameters, .. } = finding.as_problem();
+        let it = all["codes"].as_array().unwrap().iter().find(|it| it["code"] == *code).unwrap();
+        let told: BTreeSet<_> =
+            it["parameters"].as_array().unwrap().iter().filter_map(|it| it.as_str()).collect();
+        assert_eq!(told, parameters.keys().map(String::as_str).collect());
+    }
 }
 
 #[test]

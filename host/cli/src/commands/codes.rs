@@ -199,13 +199,21 @@ fn other_codes() -> impl Iterator<Item = &'static str> {
     codes::io_codes().into_iter().chain(program::USAGE).chain(lost).chain(program::UNTYPED)
 }
 
+/// Parameters that some findings have, and the examples of their codes have not.
+const SOMETIMES: [(&str, &str); 2] = [("counter-wrong", "rule"), ("samples-differ", "tried")];
+
+/// The names of the parameters that findings of the code of `example` have.
+fn names(example: &Problem) -> Vec<&str> {
+    let further = SOMETIMES.into_iter().filter(|(code, _)| *code == example.code).map(|(_, name)| name);
+    example.parameters.keys().map(String::as_str).chain(further).collect()
+}
+
 /// Every code with the names of its parameters.
 pub(super) fn all() -> Vec<Value> {
     let entry = |of: &str, code: &str, parameters: Vec<String>| json!({ "of": of, "code": code, "parameters": parameters });
-    let names = |problem: &Problem| problem.parameters.keys().cloned().collect::<Vec<_>>();
     let findings = examples::findings().into_iter().map(|finding| {
         let problem = finding.as_problem();
-        entry("finding", &problem.code, names(&problem))
+        entry("finding", &problem.code, names(&problem).into_iter().map(str::to_owned).collect())
     });
     let defects = examples::suspects().into_iter().map(|suspect| {
         let (code, parameters) = suspect.defect.tagged();
@@ -283,8 +291,7 @@ fn page() -> String {
     text += "\n## Findings of checks and runs\n\n";
     for finding in examples::findings() {
         let problem = finding.as_problem();
-        text +=
-            &format!("* `{}`{}: {}\n", problem.code, parameters(problem.parameters.keys()), problem.message);
+        text += &format!("* `{}`{}: {}\n", problem.code, parameters(names(&problem).iter()), problem.message);
         let act = act(&finding).map_or_else(String::new, |remedy| format!("  *Do:* {remedy}\n"));
         let bench = bench(&finding).map_or_else(String::new, |bench| technician(&bench));
         text += &(act + &bench);
