@@ -200,7 +200,15 @@ fn other_codes() -> impl Iterator<Item = &'static str> {
 }
 
 /// Parameters that some findings have, and the examples of their codes have not.
-const SOMETIMES: [(&str, &str); 2] = [("counter-wrong", "rule"), ("samples-differ", "tried")];
+const SOMETIMES: [(&str, &str); 7] = [
+    ("counter-wrong", "rule"),
+    ("samples-differ", "tried"),
+    ("row-copy-differs", "rules"),
+    ("row-never-sent", "rules"),
+    ("row-numbered-twice", "rules"),
+    ("row-repeats-stand", "rules"),
+    ("row-out-of-order", "rules"),
+];
 
 /// The names of the parameters that findings of the code of `example` have.
 fn names(example: &Problem) -> Vec<&str> {

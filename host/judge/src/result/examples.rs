@@ -4,8 +4,8 @@ use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, ContentKind, Corner, Counter,
     Counting, Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, KeptRow, KernelSwitch,
     LateRows, LineFault, MadeAs, MadeWith, Memory, MissingRow, NamedBlanking, NoBurst, NotExercised,
-    NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, SampleBus, SampleLines,
-    StaleFrames, Streamed, Suspect,
+    NumberedRow, PlacedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, SampleBus,
+    SampleLines, StaleFrames, Streamed, Suspect,
 };
 use crate::compare::Difference;
 use crate::verdict::Verdict;
@@ -95,11 +95,11 @@ fn of_the_board() -> [Finding; 18] {
         Finding::LatencyMiscounted { least: 972, most: 972, counted_least: 971, counted_most: 972 },
         Finding::RowMisplaced { row: 3, frame: 2 },
         Finding::RowSwallowed { row: 3, frame: 2, again: 3 },
-        Finding::RowCopyDiffers { row: 3, frame: 2 },
-        Finding::RowNeverSent { row: 3, frame: 2, sequence: 1083 },
-        Finding::RowNumberedTwice(NumberedRow { row: 3, frame: 2, number: 513 }),
-        Finding::RowRepeatsStand(RepeatedRow { row: 3, frame: 2, repeats: 0 }),
-        Finding::RowOutOfOrder { row: 3, frame: 2 },
+        Finding::RowCopyDiffers(PlacedRow { row: 3, frame: 2, rules: false }),
+        Finding::RowNeverSent { row: 3, frame: 2, sequence: 1083, rules: false },
+        Finding::RowNumberedTwice(NumberedRow { row: 3, frame: 2, number: 513, rules: false }),
+        Finding::RowRepeatsStand(RepeatedRow { row: 3, frame: 2, repeats: 0, rules: false }),
+        Finding::RowOutOfOrder(PlacedRow { row: 3, frame: 2, rules: false }),
     ]
 }
 

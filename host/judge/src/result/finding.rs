@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
-    EqualAtSpeed, FlippedBit, LateRows, MissingRow, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition,
-    RowsTried, Rule, Shortfall,
+    EqualAtSpeed, FlippedBit, LateRows, MissingRow, NoBurst, NumberedRow, PlacedRow, Problem, RepeatedRow,
+    Repetition, RowsTried, Rule, Shortfall,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -302,12 +302,7 @@ pub enum Finding {
         again: u16,
     },
     /// The board sent a row twice, with different samples.
-    RowCopyDiffers {
-        /// The row.
-        row: u16,
-        /// Its frame.
-        frame: u16,
-    },
+    RowCopyDiffers(PlacedRow),
     /// The board returned a row that it was never given.
     RowNeverSent {
         /// The row.
@@ -316,6 +311,9 @@ pub enum Finding {
         frame: u16,
         /// The row's number in the session.
         sequence: u32,
+        /// Whether its frame is one that the rules were tried with, which are numbered by themselves.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        rules: bool,
     },
     /// The board answered a request otherwise than the rules of the wire protocol demand.
     RuleBroken {
@@ -332,13 +330,8 @@ pub enum Finding {
     RowNumberedTwice(NumberedRow),
     /// The board sent a row again without counting up the number of repeats in it.
     RowRepeatsStand(RepeatedRow),
-    /// A row left the board after a row that should follow it.
-    RowOutOfOrder {
-        /// The row that came too late.
-        row: u16,
-        /// Its frame.
-        frame: u16,
-    },
+    /// A row, which is named, left the board after a row that should follow it.
+    RowOutOfOrder(PlacedRow),
     /// A row did not come back, but the whole frame did when it was sent again.
     RowLostOnce {
         /// The row.

@@ -64,7 +64,7 @@ pub use link::{LinkReport, Reconnection};
 pub use missing_rows::MissingRows;
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem, split_remedy};
-pub use rule::{Answer, MissingRow, NumberedRow, RepeatedRow, RowPart, RowsTried, Rule};
+pub use rule::{Answer, MissingRow, NumberedRow, PlacedRow, RepeatedRow, RowPart, RowsTried, Rule};
 pub(crate) use sha256::little_endian;
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};

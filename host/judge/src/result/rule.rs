@@ -207,6 +207,18 @@ pub enum RowPart {
     },
 }
 
+/// A row of which a board did something wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlacedRow {
+    /// The row.
+    pub row: u16,
+    /// Its frame.
+    pub frame: u16,
+    /// Whether its frame is one that the rules were tried with, which are numbered by themselves.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rules: bool,
+}
+
 /// Two `ROW_OUT` packets that have the same number, named by the second one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NumberedRow {
@@ -216,6 +228,9 @@ pub struct NumberedRow {
     pub frame: u16,
     /// The number in both headers.
     pub number: u16,
+    /// Whether its frame is one that the rules were tried with, which are numbered by themselves.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rules: bool,
 }
 
 /// A row that was sent again.
@@ -227,6 +242,9 @@ pub struct RepeatedRow {
     pub frame: u16,
     /// Its `repeats`, the same both times.
     pub repeats: u16,
+    /// Whether its frame is one that the rules were tried with, which are numbered by themselves.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rules: bool,
 }
 
 /// A row that alone goes missing.

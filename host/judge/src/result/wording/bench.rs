@@ -20,7 +20,7 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         | Finding::MiscountedAtSpeed { count: BurstCount::Generation, .. }
         | Finding::ClockNotAsNamed { .. }
         | Finding::RowSwallowed { .. }
-        | Finding::RowCopyDiffers { .. } => TIMING,
+        | Finding::RowCopyDiffers(_) => TIMING,
         Finding::RowsEnteredChanged { .. }
         | Finding::EntryMiscounted { .. }
         | Finding::MiscountedAtSpeed { .. }
@@ -32,7 +32,7 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         | Finding::RowNeverSent { .. }
         | Finding::RowNumberedTwice(_)
         | Finding::RowRepeatsStand(_)
-        | Finding::RowOutOfOrder { .. }
+        | Finding::RowOutOfOrder(_)
         | Finding::RuleBroken { .. } => LOGIC,
         Finding::GoldenSamplesFound { .. }
         | Finding::BoardIdentified { .. }

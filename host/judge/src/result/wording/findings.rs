@@ -1,7 +1,9 @@
 //! The sentence of a finding.
 
 use super::{at_speed, evidence, latency, missing, place, rules, suspicion};
-use crate::result::{Account, BoardKind, Counter, Defect, Doubt, Finding, NumberedRow, RepeatedRow, Rule};
+use crate::result::{
+    Account, BoardKind, Counter, Defect, Doubt, Finding, NumberedRow, PlacedRow, RepeatedRow, Rule,
+};
 use crate::words::{board_name, count, differ_of, grouped};
 
 /// A finding in one sentence, without a full stop.
@@ -135,22 +137,26 @@ pub fn sentence(finding: &Finding) -> String {
              only row {again} was lost, although the board counts it as received"
         ),
         Finding::RuleBroken { rule, request, right, found } => rules::broken(*rule, request, right, found),
-        Finding::RowCopyDiffers { row, frame } => format!(
-            "row {row} of frame {frame} came twice with different samples, each time with a right CRC"
+        Finding::RowCopyDiffers(PlacedRow { row, frame, rules }) => format!(
+            "{} came twice with different samples, each time with a right CRC",
+            row_of(*row, *frame, *rules)
         ),
-        Finding::RowNeverSent { row, frame, sequence } => format!(
-            "the board returned row {row} of frame {frame}, number {sequence} of the session, which it was never given"
+        Finding::RowNeverSent { row, frame, sequence, rules } => format!(
+            "the board returned {}, number {sequence} of the session, which it was never given",
+            row_of(*row, *frame, *rules)
         ),
-        Finding::RowNumberedTwice(NumberedRow { row, frame, number }) => format!(
-            "the board numbers its ROW_OUT packets wrongly: row {row} of frame {frame} has the number {number}, and \
-             so has another row shortly before it"
+        Finding::RowNumberedTwice(NumberedRow { row, frame, number, rules }) => format!(
+            "the board numbers its ROW_OUT packets wrongly: {} has the number {number}, and so has another row shortly before \
+             it",
+            row_of(*row, *frame, *rules)
         ),
-        Finding::RowRepeatsStand(RepeatedRow { row, frame, repeats }) => format!(
-            "the board sent row {row} of frame {frame} twice with `repeats` = {repeats}, which must grow by one each time"
+        Finding::RowRepeatsStand(RepeatedRow { row, frame, repeats, rules }) => format!(
+            "the board sent {} twice with `repeats` = {repeats}, which must grow by one each time",
+            row_of(*row, *frame, *rules)
         ),
-        Finding::RowOutOfOrder { row, frame } => format!(
-            "the board reorders rows: by the board's own packet numbers, row {row} of frame {frame} left it after a \
-             later row"
+        Finding::RowOutOfOrder(PlacedRow { row, frame, rules }) => format!(
+            "the board reorders rows: by the board's own packet numbers, {} left it after a later row",
+            row_of(*row, *frame, *rules)
         ),
         Finding::RowLostOnce { row, frame } => missing::once(*row, *frame),
         Finding::RowLostAmongOthers { row, frame } => missing::among_others(*row, *frame),
@@ -195,6 +201,11 @@ pub fn sentence(finding: &Finding) -> String {
         }
         Finding::Problem(problem) => problem.sentence(),
     }
+}
+
+/// `row 3 of frame 2`; the frames that the rules are tried with have numbers of their own.
+fn row_of(row: u16, frame: u16, rules: bool) -> String {
+    format!("row {row} of {}frame {frame}", if rules { "the rules' " } else { "" })
 }
 
 fn read_back(ports: usize) -> String {

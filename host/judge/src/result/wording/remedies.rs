@@ -65,7 +65,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         }
         Finding::BurstStalled { .. } => "Check the board's clock, and run again.",
         Finding::BurstEndedEarly { .. } | Finding::BoardExchanged {} => "Run again.",
-        Finding::RowCopyDiffers { .. } => {
+        Finding::RowCopyDiffers(_) => {
             "Check what else writes to the output banks while the board waits for the acknowledgement of a row."
         }
         Finding::RowNumberedTwice(_) => {
@@ -74,7 +74,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::RowRepeatsStand(_) => {
             "Check where the board counts how often it sent a row, the `repeats` of ROW_OUT."
         }
-        Finding::RowOutOfOrder { .. } => {
+        Finding::RowOutOfOrder(_) => {
             "Check in which order the board plays its input banks and sends its output banks, and whether RESET \
              lets its packet numbers begin anew."
         }

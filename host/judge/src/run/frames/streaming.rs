@@ -10,7 +10,7 @@ use super::pauses::pauses;
 use super::prepared::{PrepareError, Prepared};
 use super::row_judge::{JudgeOptions, RowJudge};
 use crate::board::{BoardError, MAX_LATENCY, Misconduct, row_blanking};
-use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, RepeatedRow};
+use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, PlacedRow, RepeatedRow};
 use crate::run::findings::{During, End};
 use crate::run::plan::{SENSOR_BLANKING, Segment, Timing};
 use crate::run::steps::Run;
@@ -119,21 +119,24 @@ impl Run<'_> {
     /// What the board did with rows that no link can cause, if anything.
     fn misconduct(&self, check: CheckName) -> Option<End> {
         let misconduct = self.board.misconduct()?;
+        let rules = check == CheckName::Rules;
         let finding = match misconduct {
             Misconduct::CopyDiffers { place } => {
-                Finding::RowCopyDiffers { row: place.row, frame: place.frame }
+                Finding::RowCopyDiffers(PlacedRow { row: place.row, frame: place.frame, rules })
             }
             Misconduct::NeverSent { place } => {
                 let RowPlace { row, frame, row_sequence: sequence, .. } = place;
-                Finding::RowNeverSent { row, frame, sequence }
+                Finding::RowNeverSent { row, frame, sequence, rules }
             }
             Misconduct::NumberedTwice { place, number } => {
-                Finding::RowNumberedTwice(NumberedRow { row: place.row, frame: place.frame, number })
+                Finding::RowNumberedTwice(NumberedRow { row: place.row, frame: place.frame, number, rules })
             }
             Misconduct::RepeatsStand { place, repeats } => {
-                Finding::RowRepeatsStand(RepeatedRow { row: place.row, frame: place.frame, repeats })
+                Finding::RowRepeatsStand(RepeatedRow { row: place.row, frame: place.frame, repeats, rules })
             }
-            Misconduct::OutOfOrder { place } => Finding::RowOutOfOrder { row: place.row, frame: place.frame },
+            Misconduct::OutOfOrder { place } => {
+                Finding::RowOutOfOrder(PlacedRow { row: place.row, frame: place.frame, rules })
+            }
         };
         Some(End::failed(check, finding))
     }
