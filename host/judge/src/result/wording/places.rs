@@ -154,6 +154,10 @@ pub(super) fn unknown(defect: &Defect) -> Words {
 /// What the places of the differences have in common, for the designer.
 fn hint(defect: &Defect) -> Option<String> {
     let Defect::NoneKnown { rows, columns, bits: numbers, .. } = defect else { return None };
+    // A single sample, always the same: no line that others share.
+    if let (Some(Extent::One { .. }), Some(Extent::One { .. })) = (rows, columns) {
+        return None;
+    }
     if let [bit] = numbers[..] {
         return Some(format!("Check what carries bit {bit} alone: a line that fails at times."));
     }
@@ -163,9 +167,6 @@ fn hint(defect: &Defect) -> Option<String> {
         Extent::Odd { .. } => Some(format!("what only odd {name}s use, such as one of two lanes or banks")),
         Extent::Every {} | Extent::From { .. } | Extent::Between { .. } | Extent::Some { .. } => None,
     };
-    if let (Some(Extent::One { .. }), Some(Extent::One { .. })) = (rows, columns) {
-        return None;
-    }
     let columns = columns.as_ref().and_then(|columns| of("column", columns));
     let told = columns.or_else(|| rows.as_ref().and_then(|rows| of("row", rows)))?;
     Some(format!("Check {told}."))
