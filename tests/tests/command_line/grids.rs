@@ -45,6 +45,20 @@ fn a_board_is_judged_behind_a_grid() {
     );
 }
 
+/// An entry that leads out of the row foretells only part of it, and lines that change many entries foretell less.
+#[test]
+fn what_explains_fewer_samples_is_not_said_to_explain_as_much() {
+    let small = ["--width", "64", "--height", "16", "--projection", "exact"];
+    let said = judged(&Folder::new(), "mock,fault=row-factor,row=1,bit=20,hidden=true", &small, 1);
+    let suspects = said["suspects"].as_array().unwrap();
+    assert!(
+        suspects[0]["place"].as_str().unwrap().starts_with("grid row 1, offset, one of bits 20"),
+        "{suspects:?}"
+    );
+    let explained: Vec<_> = suspects.iter().map(|it| &it["account"]["explained"]).collect();
+    assert!(explained.iter().all(|it| *it == explained[0]), "{suspects:?}");
+}
+
 /// In a frame of fewer rows a grid's entries have other places, so parts of frames would be refused.
 #[test]
 fn frames_behind_a_grid_are_whole_within_a_time() {

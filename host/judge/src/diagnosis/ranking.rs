@@ -57,7 +57,11 @@ pub(super) fn rank(witnesses: &Witnesses<'_>, hypotheses: Vec<Hypothesis<'_>>) -
 /// Both lists as one, the best first, each part once.
 pub(super) fn merge(mut ranked: Vec<Ranked>, more: Vec<Ranked>) -> Vec<Ranked> {
     ranked.extend(more);
-    ranked.sort_by(|a, b| by_share(&a.score, &b.score).then((a.before > 0).cmp(&(b.before > 0))));
+    ranked.sort_by(|a, b| {
+        by_share(&a.score, &b.score)
+            .then((a.before > 0).cmp(&(b.before > 0)))
+            .then(b.score.explained.cmp(&a.score.explained))
+    });
     let mut places = BTreeSet::new();
     ranked.retain(|candidate| places.insert(wording::place(&candidate.defect)));
     ranked
@@ -84,14 +88,17 @@ pub(super) fn suspects(ranked: &[Ranked], summary: impl FnOnce() -> Suspect) -> 
     suspects
 }
 
-/// The candidates, with those that are bits of one word merged into one. The first `alike` candidates explain everything. Also
-/// returns how many explain everything in addition to the first.
+/// The candidates, with those that are bits of one word merged into one. The first `alike` candidates explain everything that they
+/// foretell; those that foretell less than the first are left out. Also returns how many explain everything in addition to the
+/// first.
 fn entries<'r>(ranked: impl Iterator<Item = &'r Ranked>, alike: usize) -> (Vec<Ranked>, usize) {
     let mut words: Vec<Ranked> = Vec::new();
     for (place, candidate) in ranked.enumerate() {
+        let is_lesser = place < alike && candidate.explains_less_than(words.first());
         let same_word = words.iter_mut().filter(|_| place < alike).find_map(|word| word.same_word(candidate));
         match same_word {
             Some((reading, bit)) => reading.alike.push(bit),
+            None if is_lesser => {}
             None => words.push(candidate.clone()),
         }
     }
@@ -118,6 +125,10 @@ impl Ranked {
             ) if (&*node, &*weight) == (other, of) => Some((reading, *bit)),
             _ => None,
         }
+    }
+
+    fn explains_less_than(&self, best: Option<&Self>) -> bool {
+        best.is_some_and(|best| self.score.explained < best.score.explained)
     }
 
     /// Whether it explains everything, as the best does, and agrees with the best on whether the defect was there from the run's
