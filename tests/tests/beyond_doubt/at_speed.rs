@@ -79,6 +79,7 @@ fn a_wrong_signature_fails_and_what_does_not_come_again_is_said() {
     };
     assert!(report.headline().contains("repeated by itself, it was right"), "{}", report.headline());
     assert_eq!(report.suspects[0].defect, Defect::SeenAtSpeed { row: None, samples: 0, bits: Vec::new() });
+    assert!(report.suspects[0].designer().starts_with("If streamed frames"), "{:?}", report.suspects);
 }
 
 /// A fault of the mock, the place that is suspected, which is empty for none, and a part of the sentence.

@@ -65,8 +65,8 @@ pub(super) fn seen_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
         part: "timing or logic",
         place: format!("a fault at full speed that may also occur row by row{bits}"),
         defect: format!("the frame that was wrong at full speed was not sent row by row{kept}"),
-        designer: "Stream a frame of this size with these tables: if it is right, check the timing of the datapath at this \
-                   clock, and its supply; if it is not, look for what depends on size, centre, depth and tables."
+        designer: "If streamed frames of this size with these tables are right, check the timing of the datapath at this clock, \
+                   and its supply; otherwise look for what depends on size, centre, depth and tables too."
             .to_owned(),
         technician: TIMING,
     }
