@@ -26,6 +26,9 @@ fn credit(report: &Report) -> u32 {
     let Answer::Credit { rows } = found else { panic!("{}", report.headline()) };
     let told = "the window must be next_row plus row_banks_in";
     assert!(report.headline().contains(told), "{}", report.headline());
+    // The rule is no refusal.
+    let asked = report.finding.remedy().unwrap_or_default();
+    assert!(asked.contains("protocol/WIRE.md") && !asked.contains("refuse"), "{asked}");
     *rows
 }
 

@@ -6,8 +6,8 @@ use crate::result::{Answer, RowPart, RowsTried, Rule};
 use crate::words::{count, differ_of};
 
 /// What to do about any broken rule.
-pub(super) const REMEDY: &str = "Check how the board decodes requests, and try it with the conformance tests; \
-                                 protocol/WIRE.md says what it must refuse.";
+pub(super) const REMEDY: &str = "Check how the board decodes and carries out requests, and try it with the conformance \
+                                 tests; protocol/WIRE.md has the rules.";
 
 /// How many of the samples differ, in the rows that a rule was tried with.
 pub(super) fn samples_differ((differences, samples): (usize, usize), rows: &RowsTried) -> String {
