@@ -37,8 +37,8 @@ fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
     let page = |language: &str| here.get("/").with("accept-language", language).send().text();
     here.get("/").until("lane fail");
     for (language, said) in [
-        ("de", ["Abtastwerten weichen ab", "durch einen Bediener", "gesichert ", "Bitstream neu laden"]),
-        ("zh", ["个样值中", "由操作员停用", "已保存 ", "请重新加载比特流"]),
+        ("de", ["Abtastwerten weichen ab", "von Hand", "gesichert ", "Bitstream neu laden"]),
+        ("zh", ["个样值中", "由人停用", "已保存 ", "请重新加载比特流"]),
     ] {
         let page = page(language);
         for said in said {

@@ -35,6 +35,7 @@ impl Words {
         match name {
             "others" => Some(self.others(value.and_then(Value::as_u64).unwrap_or_default())),
             "differing_frames" => Some(self.in_frames(parameters)),
+            "frame" => self.rules_frame(value?, parameters).or_else(own),
             "is_one_row" => Some(self.one_row(parameters)),
             "rows" => self.some_rows(parameters).or_else(own),
             // Earlier records call the entries of tables `rows`.
@@ -115,6 +116,12 @@ impl Words {
         }
         let [differing, all] = ["differing_frames", "frames"].map(part);
         self.fill("told.in-frames", &[("differing", &differing), ("all", &all)])
+    }
+
+    /// A frame that the rules were tried with, which are numbered by themselves.
+    fn rules_frame(&self, frame: &Value, parameters: &Value) -> Option<String> {
+        let of_rules = parameters.get("rules").and_then(Value::as_bool)?;
+        of_rules.then(|| self.fill("told.rules-frame", &[("frame", &self.value(frame))]))
     }
 
     /// How many of all rows are late.

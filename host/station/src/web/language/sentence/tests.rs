@@ -17,7 +17,7 @@ fn german(said: &Said) -> (String, Option<&'static str>) {
 fn what_has_a_code_is_said_in_the_language_with_its_figures_and_causes() {
     let lane = "3".to_owned();
     let out = ScanError::Lane(Refusal::Out { lane, why: Saying::OutByPerson.into() });
-    let told = "Platz 3 ist gesperrt: durch einen Bediener; mit HR:IN entsperren oder anderen Platz nehmen";
+    let told = "Platz 3 ist gesperrt: von Hand; mit HR:IN entsperren oder anderen Platz nehmen";
     assert_eq!(german(&Said::of(&out)), (told.to_owned(), None));
     let text = "lane 3 is out of service: taken out by hand; put it back with HR:IN, or take another lane";
     assert_eq!(of(None, None).tell(&Said::of(&out)).text, text);
@@ -95,6 +95,9 @@ fn findings_within_findings_and_parts_of_a_figure_are_said_too() {
     in_rules.parameters.insert("tried".to_owned(), json!({ "width": 14, "height": 3 }));
     let told = "7 von 99 Abtastwerten weichen ab, in Zeilen, an denen die Regeln des Protokolls geprüft wurden (14 x 3); Verdacht: ";
     assert!(german(&in_rules).0.starts_with(told), "{}", german(&in_rules).0);
+    let late = judged("row-out-of-order", &json!({ "row": 14, "frame": 13, "rules": true }));
+    let told = "die Platine ordnet Zeilen um: Zeile 14 von Bild 13 der Regeln kam hinter einer späteren";
+    assert_eq!(german(&late).0, told);
     let asked = of(Some("de"), None).remedy(Some(&differ), "in English");
     assert!(asked.text.starts_with("Bitstream neu laden") && asked.foreign.is_none(), "{asked:?}");
     let doubted = judged(
