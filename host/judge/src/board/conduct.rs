@@ -1,6 +1,6 @@
 //! What a board did with rows that no link can have caused: every packet has a CRC, a session and a number of its own.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use halfrow_protocol::message::{Refusal, RowOut, RowPlace};
 use halfrow_protocol::{Header, Kind, Packet, Reply};
@@ -135,8 +135,9 @@ impl Conduct {
         }
     }
 
-    /// Whether a packet is missing between the rows around `row_sequence` that came, `came` among them: then this row had left in its
-    /// place, the link lost it, and what came is a repeat of it.
+    /// Whether packets for all rows between those around `row_sequence` that came, `came` among them, are missing: then this row had
+    /// left in its place, the link lost it, and what came is a repeat of it. After a RESET row sequence numbers go on after a gap, for
+    /// which there is no room.
     fn had_room(&self, came: &Came, row_sequence: u32) -> bool {
         let sequence = |came: &&Came| came.place.row_sequence;
         let firsts = || self.packets.iter().chain([came]).filter(|came| came.repeats == 0);
@@ -145,15 +146,14 @@ impl Conduct {
         let late = firsts().rfind(|came| sequence(came) == row_sequence);
         let (Some(above), Some(late)) = (above, late) else { return false };
         let is_behind = (1..1 << 15).contains(&late.number.wrapping_sub(above.number));
-        is_behind
-            && match below {
-                Some(below) => {
-                    let rows = above.place.row_sequence - below.place.row_sequence;
-                    u32::from(above.number.wrapping_sub(below.number)) >= rows
-                }
-                // The numbers of a session begin at 0.
-                None => above.number > 0,
-            }
+        // The numbers of a session begin at 0.
+        let (before, rows) = below.map_or((u16::MAX, above.place.row_sequence), |below| {
+            (below.number, above.place.row_sequence - below.place.row_sequence - 1)
+        });
+        let after = |number: u16| number.wrapping_sub(before);
+        let numbers = self.packets.iter().chain([came]).map(|came| after(came.number));
+        let taken: BTreeSet<_> = numbers.filter(|number| (1..after(above.number)).contains(number)).collect();
+        is_behind && u32::from(after(above.number)) > rows + taken.len() as u32
     }
 
     fn note(&mut self, misconduct: Misconduct) {
@@ -328,6 +328,22 @@ mod tests {
         assert_eq!(found(&[(0, 0, 0, 1), (2, 2, 0, 3), (2, 2, 0, 3), (1, 1, 0, 2), (3, 0, 1, 1)]), None);
         assert_eq!(found(&[(3, 1, u16::MAX, 1), (2, 0, 1, 1)]), None);
         assert_eq!(found(&[(65_535, 7, 0, 1), (0, 8, 0, 1), (1, 7, 1, 1), (65_535, 7, 0, 1)]), None);
+    }
+
+    /// Numbers that other packets have are no room for a row that the link lost.
+    #[test]
+    fn a_repeat_that_does_not_count_is_told_from_a_row_in_another_place() {
+        for stands in [&[(0, 0, 0, 1), (2, 2, 0, 1), (3, 1, 0, 1)][..], &[(1, 1, 0, 1), (2, 0, 0, 1)]] {
+            assert!(matches!(found(stands), Some(Misconduct::RepeatsStand { .. })), "{stands:?}");
+        }
+        for reordered in [
+            &[(0, 0, 0, 1), (1, 2, 0, 1), (2, 1, 0, 1)][..],
+            &[(0, 0, 0, 1), (1, 0, 1, 1), (2, 2, 0, 1), (3, 1, 0, 1)],
+            &[(4, 4, 0, 1), (6, 5, 1, 1), (7, 7, 0, 1), (8, 6, 0, 1)],
+            &[(1, 2, 0, 1), (2, 1, 0, 1)],
+        ] {
+            assert!(matches!(found(reordered), Some(Misconduct::OutOfOrder { .. })), "{reordered:?}");
+        }
     }
 
     #[test]
