@@ -77,6 +77,8 @@ pub(super) struct Conversation {
     pub(super) waited: Duration,
     /// The time spent on what the last exchange brought, which is added with that of the next one.
     spent: Duration,
+    /// The requests that were answered by a refusal.
+    refused: u64,
     /// What the board counts of the packets sent.
     pub(super) counted: Counted,
     /// Whether to ask for that count wherever a packet may have been lost unnoticed.
@@ -103,6 +105,7 @@ impl Conversation {
             limit: options.retry_limit,
             waited: Duration::ZERO,
             spent: Duration::ZERO,
+            refused: 0,
             counted: Counted::default(),
             counts: options.counts,
             lateness: Lateness::default(),
@@ -142,6 +145,7 @@ impl Conversation {
     /// What came so far, and what may have kept more from coming.
     fn heard(&self) -> Received {
         let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, answered, .. } = self.tally;
+        let answered = answered + self.refused;
         let waits_for_cts = self.link.waits_for_cts();
         Received { bytes, packets, answered, damaged, waits_for_cts, ..self.before }
     }

@@ -90,7 +90,9 @@ impl Conversation {
         if again == 0 {
             self.unclosed = Unclosed::default();
         }
-        self.tally.answered += u64::from(answer.header.kind == kind.code());
+        let is_reply = answer.header.kind == kind.code();
+        self.tally.answered += u64::from(is_reply);
+        self.refused += u64::from(!is_reply);
     }
 
     /// Moves bytes once, and returns the answer if it is among them.
