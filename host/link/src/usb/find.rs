@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::chip::{Channel, Chip};
 use super::error::UsbError;
 use super::serial_ports;
-use super::transport::failure;
+use super::transport::UsbFailure;
 use crate::ftdi::VENDOR;
 use crate::sysfs::UsbDevice;
 use crate::{Holder, holders};
@@ -84,7 +84,8 @@ fn all() -> Result<Vec<FtdiDevice>, UsbError> {
 }
 
 fn no_usb(error: rusb::Error) -> UsbError {
-    UsbError::NoUsb(failure(error))
+    // What a device does is not the matter, so this is none of its failures.
+    UsbError::NoUsb(UsbFailure::Other(error.to_string()))
 }
 
 fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
