@@ -2,7 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use halfrow::result::{BrokenOff, BurstCount, Corner, Counter, Doubt, Finding, Problem, RowsTried, Rule};
+use halfrow::result::{
+    BrokenOff, BurstCount, Corner, Counter, Doubt, Finding, NumberedRow, PlacedRow, Problem, RepeatedRow,
+    RowsTried, Rule,
+};
 use halfrow_tests::program::{Folder, error_sentence, halfrow};
 
 use crate::small;
@@ -209,7 +212,15 @@ fn every_parameter_that_a_report_may_have_is_listed() {
         short: None,
     };
     let all = halfrow(["codes", "--json"]).json();
-    for finding in [with_rule(), differ] {
+    let placed = PlacedRow { row: 3, frame: 2, rules: true };
+    let misconduct = [
+        Finding::RowCopyDiffers(placed),
+        Finding::RowNeverSent { row: 3, frame: 2, sequence: 35, rules: true },
+        Finding::RowNumberedTwice(NumberedRow { row: 3, frame: 2, number: 7, rules: true }),
+        Finding::RowRepeatsStand(RepeatedRow { row: 3, frame: 2, repeats: 0, rules: true }),
+        Finding::RowOutOfOrder(placed),
+    ];
+    for finding in misconduct.into_iter().chain([with_rule(), differ]) {
         let Problem { code, parameters, .. } = finding.as_problem();
         let it = all["codes"].as_array().unwrap().iter().find(|it| it["code"] == *code).unwrap();
         let told: BTreeSet<_> =
