@@ -237,7 +237,7 @@ fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Cop
         taken => taken?,
     };
     let mut named = copy.named_evidence()?;
-    named.append(&mut beyond_rows(&from.blobs(), &copy)?);
+    named.append(&mut beyond_rows(&from.blobs(), &copy, Vec::new())?);
     let evidence = copy_named(&named, &from.blobs(), &to.blobs(), ends)?;
     let (unknown, left_out) = copy_unnamed(&copy, (&pieces, &named), [&from.blobs(), &to.blobs()], ends)?;
     synced(aside).map_err(StoreError::from)?;

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::unnamed::{beyond_rows, of_unnamed_records};
+use super::unnamed::beyond_rows;
 use crate::record::BlobError;
 use crate::store::{Snapshot, Store, StoreError};
 
@@ -27,8 +27,8 @@ pub fn prune(store: &mut Store, before_ms: i64, operator: &str) -> Result<Pruned
     if !here.is_empty() {
         let snapshot = Snapshot::take(store.folder())?;
         // A run whose record or attachment has no row may be younger than those with rows.
-        let mut kept = of_unnamed_records(&blobs, &blobs.all()?, &snapshot.named_evidence()?)?;
-        kept.append(&mut beyond_rows(&blobs, &snapshot)?);
+        let unnamed = blobs.unnamed_records(&blobs.all()?, &snapshot.named_evidence()?)?;
+        let kept = beyond_rows(&blobs, &snapshot, unnamed)?;
         here.retain(|hash| !kept.contains(hash));
     }
     store.note_removed(operator, "prune", &here, "older than it is kept")?;

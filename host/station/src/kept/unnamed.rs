@@ -6,7 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use crate::record::{BlobError, Blobs, Piece};
+use crate::record::{BlobError, Blobs, Piece, UnnamedRecord};
 use crate::store::{Snapshot, Store, StoreError};
 
 /// How long it is kept, in case somebody asks what happened.
@@ -64,26 +64,32 @@ fn old_pieces(store: &Store, blobs: &Blobs) -> Result<Vec<Piece>, StoreError> {
         |piece: &Piece| is_old(piece.modified) && !named.contains(&piece.hash) && !kept.contains(&piece.hash);
     let mut pieces: Vec<_> = all.into_iter().filter(may_go).collect();
     if !pieces.is_empty() {
-        let beyond = beyond_rows(blobs, &snapshot)?;
+        let beyond = beyond_rows(blobs, &snapshot, Vec::new())?;
         pieces.retain(|piece| !beyond.contains(&piece.hash));
     }
     Ok(pieces)
 }
 
-/// What records name for which their runs have no row of an attachment, because the database has lost it. Of a record that cannot
-/// be read only its rows tell.
-pub(super) fn beyond_rows(blobs: &Blobs, snapshot: &Snapshot) -> Result<BTreeSet<String>, StoreError> {
+/// What the records of runs and these `unnamed` ones name for which their runs have no row of an attachment, because the database has
+/// lost it. Of a record that cannot be read only its rows tell.
+pub(super) fn beyond_rows(
+    blobs: &Blobs,
+    snapshot: &Snapshot,
+    unnamed: Vec<UnnamedRecord>,
+) -> Result<BTreeSet<String>, StoreError> {
     let rows = snapshot.attachments()?;
+    let of_runs = snapshot.final_runs()?.into_iter().map(|(run, record)| (run, blobs.named_by(&record)));
+    let unnamed = unnamed.into_iter().map(|record| (record.run, record.attachments));
     let mut beyond = BTreeSet::new();
-    for (run, record) in snapshot.final_runs()? {
-        let named = blobs.named_by(&record).into_iter();
-        beyond.extend(named.filter(|hash| !rows.get(&run).is_some_and(|of_run| of_run.contains(hash))));
+    for (run, named) in of_runs.chain(unnamed) {
+        let has_row = |hash: &String| rows.get(&run).is_some_and(|of_run| of_run.contains(hash));
+        beyond.extend(named.into_iter().filter(|hash| !has_row(hash)));
     }
     Ok(beyond)
 }
 
 /// The records among `pieces` that are not in `named`, the hashes that rows name, and what these records name.
-pub(super) fn of_unnamed_records(
+fn of_unnamed_records(
     blobs: &Blobs,
     pieces: &[Piece],
     named: &BTreeSet<String>,

@@ -115,6 +115,20 @@ fn what_a_record_without_a_row_names_does_not_go_with_the_old_run_that_has_it_to
     assert!(made.folder().blobs().get(&halfrow::result::sha256(["seen"])).is_ok());
 }
 
+/// The power failed between the record and its row, and the run was closed with another record of the same evidence.
+#[test]
+fn a_record_that_another_one_of_its_run_took_the_place_of_keeps_nothing_from_going_by_age() {
+    let mut made = Made::new();
+    made.run(&Run { started_ms: BEGIN_MS, evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
+    let blobs = made.folder().blobs();
+    let hashes = query(made.as_ref(), "SELECT record_sha256 FROM run");
+    let mut record: serde_json::Value = serde_json::from_slice(&blobs.get(&hashes[0]).unwrap()).unwrap();
+    record["conclusion"]["verdict"] = "PASS".into();
+    blobs.put(record.to_string().as_bytes()).unwrap();
+    assert_eq!(prune(&mut made.store, BEGIN_MS + 24 * HOUR_MS, "engel").unwrap().pieces, 1);
+    assert!(blobs.get(&halfrow::result::sha256(["seen"])).is_err());
+}
+
 #[test]
 fn what_a_record_names_stays_and_is_copied_where_its_rows_are_lost() {
     let mut made = Made::new();
