@@ -26,8 +26,7 @@ impl<'a> Plans<'a> {
         Self { folder, kept: KeptPlans::of(data), trusted, named: Vec::new() }
     }
 
-    /// The index of this plan among them; it is loaded when it is named first. A file may have several names, and a copy of it
-    /// would take the same serial numbers: either is the same plan.
+    /// The index of this plan among them; it is loaded when it is named first.
     pub(super) fn take(&mut self, text: &Spanned<String>) -> Result<usize, Fault> {
         not_empty(text)?;
         let (path, expected) = self.path(text)?;
@@ -41,11 +40,14 @@ impl<'a> Plans<'a> {
             let what = format!("the plan {} is not as it was published", text.get_ref());
             return Err(Fault::wrong(text.span().start, what, FETCH));
         }
-        if let Some(known) = self.named.iter().position(|known| known.plan.sha256 == plan.sha256) {
-            return Ok(known);
-        }
         self.named.push(PlanFile { path, plan });
         Ok(self.named.len() - 1)
+    }
+
+    /// Whether these take the same serial numbers: a file may have several names, and copies.
+    pub(super) fn are_same(&self, one: usize, other: usize) -> bool {
+        let hash = |index: usize| self.named.get(index).map(|named| &named.plan.sha256);
+        hash(one) == hash(other)
     }
 
     /// All of them.

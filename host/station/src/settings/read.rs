@@ -274,8 +274,8 @@ fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneS
     let mut of_lane = Vec::new();
     for file in text.plans.get_ref() {
         let plan = plans.take(file)?;
-        let earlier =
-            of_lane.iter().position(|known| *known == plan).and_then(|at| text.plans.get_ref().get(at));
+        let earlier = of_lane.iter().position(|known| plans.are_same(*known, plan));
+        let earlier = earlier.and_then(|at| text.plans.get_ref().get(at));
         if let Some(earlier) = earlier.map(Spanned::get_ref) {
             let first =
                 if earlier == file.get_ref() { String::new() } else { format!(", first as {earlier}") };
