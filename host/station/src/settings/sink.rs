@@ -195,9 +195,10 @@ fn proxy(text: Option<&Spanned<String>>, to: &SinkAddress) -> Result<Option<Prox
     proxy.build().map(Some).map_err(|_| no_proxy())
 }
 
-/// The port of an address without a user; `default` if it names none. None if it names one that no computer has.
+/// The port of an address without a user; `default` if it names none, or an empty one. None if it names one that no computer has.
 fn port(authority: &Authority, default: u16) -> Option<u16> {
-    if authority.as_str() == authority.host() { Some(default) } else { authority.port_u16() }
+    let is_bare = authority.as_str().trim_end_matches(':') == authority.host();
+    if is_bare { Some(default) } else { authority.port_u16() }
 }
 
 /// The address of a sink. What leaves this computer goes through TLS, and no address has a password.
