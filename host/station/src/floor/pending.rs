@@ -86,11 +86,13 @@ impl Floor {
         }
     }
 
-    /// Reads the serial number by the plans of the first lane that takes it. Each lane has plans of its own: two that would both
-    /// take it may be in different lanes, and a board comes into one.
-    fn read_for_any(&self, serial: &str, operator: &str) -> Result<Accepted, ScanError> {
-        let by_a_lane = self.plans_of.iter().find_map(|plans| self.read(plans, serial, operator).ok());
-        by_a_lane.map_or_else(|| self.read(&self.plans_of.concat(), serial, operator), Ok)
+    /// Refuses a serial number that no lane takes by its plans. Each lane has plans of its own: two that would both take it may be in
+    /// different lanes, and a board comes into one.
+    fn refuse_for_all(&self, serial: &str, operator: &str) -> Result<(), ScanError> {
+        let here = |accepted: &Accepted| self.refuse_elsewhere(usize::MAX, accepted);
+        let by_lanes = self.plans_of.iter().filter_map(|plans| self.read(plans, serial, operator).ok());
+        let any = by_lanes.map(|accepted| here(&accepted)).reduce(Result::or);
+        any.unwrap_or_else(|| here(&self.read(&self.plans_of.concat(), serial, operator)?))
     }
 
     /// Keeps the serial number for the next lane into which a board is plugged.
@@ -100,8 +102,7 @@ impl Floor {
         operator: &str,
         now: Duration,
     ) -> Result<ScanOutcome, ScanError> {
-        let accepted = self.read_for_any(&serial, operator)?;
-        self.refuse_elsewhere(usize::MAX, &accepted)?;
+        self.refuse_for_all(&serial, operator)?;
         let said = match self.pending(now).map(str::to_owned) {
             Some(other) => Saying::WaitsInstead { serial: serial.clone(), other },
             None => Saying::WaitsForPlug { serial: serial.clone() },

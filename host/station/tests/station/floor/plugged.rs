@@ -325,6 +325,22 @@ fn a_number_waits_for_its_board_if_one_lane_takes_it_whatever_other_lanes_have()
     assert!(floor.lanes()[2].note().unwrap().to_string().contains("and is not tested"));
 }
 
+/// What one lane judges says nothing of another product with the same number.
+#[test]
+fn a_number_waits_though_a_lane_judges_that_of_another_product() {
+    let place = |name: &str, plans| Place { name: name.to_owned(), starts: SCAN, plans };
+    let places = vec![place("1", vec![0]), place("2", vec![1])];
+    let mut floor = Floor::new(places, vec![rule("CAM-A", "CA"), rule("CAM-B", "CA")], true);
+    floor.scan(&serial(0), WEBER, at(10)).unwrap();
+    look(&mut floor, 0, true, at(11));
+    assert_eq!(floor.looked(&[], at(12)).len(), 1);
+    assert_eq!(floor.scan(&serial(0), WEBER, at(13)).unwrap().lane, None);
+    look(&mut floor, 1, true, at(14));
+    let begun = floor.looked(&[], at(15));
+    assert!(matches!(&begun[..], [(1, Some(Effect::Begin(of)))] if of.plan == 1), "{begun:?}");
+    assert!(matches!(floor.scan(&serial(0), WEBER, at(16)), Err(ScanError::Elsewhere { .. })));
+}
+
 /// A lane that could not tell which plan is meant does not keep a number from waiting for it in vain.
 #[test]
 fn a_number_that_no_lane_takes_does_not_wait() {
