@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use super::Fault;
-use crate::store::{Key, Row, Rows, StoreError};
+use crate::store::{Key, Row, Rows, StoreError, lacks};
 
 /// Adds the differences between the two, which are sorted by key, to `faults`.
 pub(super) fn compare(
@@ -55,7 +55,7 @@ fn differing(table: &'static str, key: &Key, stored: Row, rebuilt: Row, faults: 
 
 /// Adds the fault that the column `name` is lost, unless it was told.
 fn lost(name: &str, faults: &mut Vec<Fault>) {
-    let said = format!("there is no {name}");
+    let said = lacks(name);
     if !faults.iter().any(|fault| matches!(fault, Fault::Database { said: told } if *told == said)) {
         faults.push(Fault::Database { said });
     }

@@ -72,27 +72,11 @@ fn at_runs(
 ) -> Result<(), StoreError> {
     let (finals, open) = (snapshot.final_runs()?, snapshot.open_runs()?);
     let rebindings = snapshot.rebindings()?;
-    let mut look = Look {
-        blobs: folder.blobs(),
-        removed: snapshot.pruned()?,
-        rebuilt: Rebuilt::new()?,
-        early: Vec::new(),
-        evidence: 0,
-        pruned: 0,
-        unread: 0,
-        faults: mem::take(&mut checked.faults),
-    };
+    let (blobs, removed, rebuilt) = (folder.blobs(), snapshot.pruned()?, Rebuilt::new()?);
+    (checked.runs, checked.open) = (finals.len(), open.len());
+    let mut look = Look { blobs, removed, rebuilt, early: Vec::new(), checked };
     look.at_all(&finals, &open, &rebindings);
-    let Look { mut rebuilt, evidence, pruned, unread, faults, .. } = look;
-    *checked = Checked {
-        runs: finals.len(),
-        open: open.len(),
-        evidence,
-        pruned,
-        unread,
-        faults,
-        superseded: Vec::new(),
-    };
+    let Look { mut rebuilt, checked, .. } = look;
     for (table, key) in TABLES {
         let (stored, rebuilt) = (snapshot.table(table, key), rebuilt.table(table, key));
         unless_damaged(is_damaged, compare(table, stored, rebuilt, &mut checked.faults))?;
@@ -148,20 +132,17 @@ enum Entry<'a> {
     Rebinding(&'a Rebinding),
 }
 
-struct Look {
+struct Look<'a> {
     blobs: Blobs,
     removed: Removed,
     rebuilt: Rebuilt,
     /// Records, with their hashes, of runs that bind what still belongs to another: earlier programs let a run have what a person
     /// freed after it had begun.
     early: Vec<(Record, String)>,
-    evidence: usize,
-    pruned: usize,
-    unread: usize,
-    faults: Vec<Fault>,
+    checked: &'a mut Checked,
 }
 
-impl Look {
+impl Look<'_> {
     /// Goes through runs and changed bindings in the order in which they began, which is that of their ids.
     fn at_all(&mut self, finals: &[(String, String)], open: &[OpenRun], rebindings: &[Rebinding]) {
         let finals = finals.iter().map(|(run, hash)| (run, Entry::Final { run, hash }));
@@ -176,12 +157,13 @@ impl Look {
                 Entry::Rebinding(change) => self.at_rebinding(change),
             };
             let fault = done.err();
-            self.unread += usize::from(matches!(fault, Some(Fault::Evidence { .. } | Fault::Record { .. })));
-            self.faults.extend(fault);
+            self.checked.unread +=
+                usize::from(matches!(fault, Some(Fault::Evidence { .. } | Fault::Record { .. })));
+            self.checked.faults.extend(fault);
         }
         for (record, hash) in mem::take(&mut self.early) {
             let fault = self.add(&record, &hash).err();
-            self.faults.extend(fault);
+            self.checked.faults.extend(fault);
         }
     }
 
@@ -207,7 +189,7 @@ impl Look {
     fn at_final(&mut self, run: &str, hash: &str) -> Result<(), Fault> {
         let owned = || run.to_owned();
         let evidence = |source| Fault::Evidence { run: owned(), source };
-        self.evidence += 1;
+        self.checked.evidence += 1;
         let bytes = self.blobs.get(hash).map_err(evidence)?;
         let record = Record::parse(&bytes).map_err(|source| Fault::Record { run: owned(), source })?;
         for attachment in &record.attachments {
@@ -215,14 +197,14 @@ impl Look {
                 Err(error)
                     if error.is_gone() && self.removed.explains(&attachment.sha256, record.ended_ms) =>
                 {
-                    self.pruned += 1;
+                    self.checked.pruned += 1;
                 }
-                Err(source) => self.faults.push(evidence(source)),
-                Ok(_) => self.evidence += 1,
+                Err(source) => self.checked.faults.push(evidence(source)),
+                Ok(_) => self.checked.evidence += 1,
             }
         }
         if !is_as_hashed(&record.plan) {
-            self.faults.push(Fault::Plan { run: owned() });
+            self.checked.faults.push(Fault::Plan { run: owned() });
         }
         match self.add(&record, hash) {
             Err(_) if record.binds().is_some() => self.early.push((record, hash.to_owned())),

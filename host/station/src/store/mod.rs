@@ -60,6 +60,7 @@ pub(crate) use reason::MOST_REASON;
 pub use reason::{Reason, ReasonError};
 pub use retention::Removed;
 pub use retest_policy::AgainError;
+pub(crate) use shape::lacks;
 pub use shared_store::SharedStore;
 pub use shift::{Checked, InLane, Owed};
 pub(crate) use snapshot::Rebuilt;

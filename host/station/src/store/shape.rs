@@ -4,6 +4,11 @@ use std::collections::BTreeMap;
 
 use super::database::{Database, DatabaseError};
 
+/// That a database has no such table, index or column, which is `table.column`.
+pub(crate) fn lacks(what: &str) -> String {
+    format!("there is no {what}")
+}
+
 /// Tables and indices, by their names.
 pub(super) struct Shape {
     /// The columns of each table.
@@ -34,9 +39,9 @@ impl Shape {
         let mut lost = Vec::new();
         for table in self.tables.keys() {
             match self.columns_lost_in(here, table) {
-                None => lost.push(format!("there is no {table}")),
+                None => lost.push(lacks(table)),
                 Some(columns) => {
-                    lost.extend(columns.iter().map(|column| format!("there is no {table}.{column}")));
+                    lost.extend(columns.iter().map(|column| lacks(&format!("{table}.{column}"))));
                 }
             }
         }
@@ -44,7 +49,7 @@ impl Shape {
             // The indices of a table that is not whole went with what it lost.
             if self.columns_lost_in(here, &index.0).is_some_and(|columns| columns.is_empty()) {
                 match here.indices.get(name) {
-                    None => lost.push(format!("there is no index {name}")),
+                    None => lost.push(lacks(&format!("index {name}"))),
                     Some(other) if other != index => lost.push(format!("the index {name} is another one")),
                     Some(_) => {}
                 }
