@@ -244,7 +244,10 @@ pub(super) fn all() -> Vec<Value> {
 /// What to do about an example of a finding. If another finding of its code may need something else, the text says so.
 pub(super) fn act(example: &Finding) -> Option<String> {
     let remedy = example.remedy()?;
-    Some(depending(example).map_or(remedy.clone(), |on| format!("{} In this example: {remedy}", on.words())))
+    Some(match depending(example) {
+        Some(on) => on.in_this_example(&remedy),
+        None => remedy,
+    })
 }
 
 /// What a technician does about it; none if another code says that.
@@ -252,7 +255,7 @@ pub(super) fn bench(example: &Finding) -> Option<String> {
     let asked = example.technician()?;
     match depending(example) {
         Some(Depends::Code(_)) => None,
-        Some(on @ Depends::Both(_)) => Some(format!("{} In this example: {asked}", on.words())),
+        Some(on @ Depends::Both(_)) => Some(on.in_this_example(&asked)),
         Some(Depends::Remedy(_)) | None => Some(asked),
     }
 }
@@ -268,10 +271,13 @@ enum Depends {
 }
 
 impl Depends {
-    fn words(&self) -> String {
+    /// On what it depends, and what is `asked` in the example.
+    fn in_this_example(&self, asked: &str) -> String {
         match self {
-            Self::Code(whose) => format!("See the code of {whose}."),
-            Self::Both(what) | Self::Remedy(what) => format!("This depends on {what}."),
+            Self::Code(whose) => format!("See the code of {whose}. In this example: {asked}"),
+            Self::Both(what) | Self::Remedy(what) => {
+                format!("This depends on {what}. In this example: {asked}")
+            }
         }
     }
 }
