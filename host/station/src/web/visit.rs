@@ -54,6 +54,11 @@ impl Visit {
         self.words.say(key)
     }
 
+    /// The words of `key`, which ask for an engineer, or those for a station where nobody can be one.
+    pub(super) fn for_engineers(&self, key: &'static str) -> &'static str {
+        self.say(if self.can_log_in { key } else { "trouble.unlisted" })
+    }
+
     /// The visitor's name, for records and the audit.
     pub(super) fn name(&self) -> &str {
         self.user.as_ref().map_or("", |user| user.name.as_str())

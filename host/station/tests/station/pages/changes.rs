@@ -65,6 +65,17 @@ fn what_waits_at_two_sinks_is_tried_again_where_the_engineer_says() {
 }
 
 #[test]
+fn nobody_is_told_to_log_in_where_nobody_can() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let here = serving.here();
+    for act in [here.post("/lanes/1/out", &[]), here.post("/scan", &[("text", "HR:OUT")])] {
+        let said = act.with("accept", "application/json").send().text();
+        assert!(said.contains("nobody logs in") && !said.contains("log in as"), "{said}");
+    }
+}
+
+#[test]
 fn an_engineer_waives_a_fail_once_and_with_a_reason_and_everyone_sees_it() {
     let (station, serving, run) = failed();
     let (operator, engineer) = (serving.operator(), serving.engineer());
