@@ -62,6 +62,21 @@ impl Server {
         self.client("plant").batch_execute(&never).unwrap();
     }
 
+    /// From now on the plant loses every new row of `table`, and says that it has entered it.
+    pub(crate) fn loses(&self, table: &str) {
+        let loses = format!(
+            "CREATE FUNCTION lost() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RETURN NULL; END $$;
+            CREATE TRIGGER lost BEFORE INSERT ON {table} FOR EACH ROW EXECUTE FUNCTION lost()"
+        );
+        self.client("plant").batch_execute(&loses).unwrap();
+    }
+
+    /// Ends [`Self::loses`].
+    pub(crate) fn loses_nothing(&self, table: &str) {
+        let ends = format!("DROP TRIGGER lost ON {table}; DROP FUNCTION lost");
+        self.client("plant").batch_execute(&ends).unwrap();
+    }
+
     pub(crate) fn data(&self) -> PathBuf {
         self.folder.path().join("data")
     }
