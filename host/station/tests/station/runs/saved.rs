@@ -1,10 +1,14 @@
 //! What the store guarantees.
 
+use std::path::Path;
 use std::process::Command;
 
+use halfrow_station::record::Record;
 use halfrow_station::store::{Store, StoreError};
+use rusqlite::Connection;
 
 use super::bench::{PLAN, Station, program};
+use crate::history::made::{End, Made, Run, record};
 
 #[test]
 fn only_one_program_writes() {
@@ -65,4 +69,38 @@ fn is_safe(lines: &[&str]) -> bool {
     };
     let synced = last("fdatasync(").max(last("fsync("));
     last("pwrite64(").is_some_and(|written| synced > Some(written))
+}
+
+/// Makes the database enter a run that ends with these values, whatever it is given.
+fn enter_otherwise(database: &Path, values: &str) {
+    let otherwise = format!(
+        "CREATE TRIGGER otherwise AFTER UPDATE OF state ON run BEGIN
+            UPDATE run SET {values} WHERE id = new.id;
+        END"
+    );
+    Connection::open(database).unwrap().execute_batch(&otherwise).unwrap();
+}
+
+#[test]
+fn a_verdict_that_reads_back_otherwise_is_not_shown() {
+    let station = Station::with(PLAN);
+    assert_eq!(station.run("CAT00001", "mock").code, Some(0));
+    enter_otherwise(&station.store().database(), "verdict = 'FAIL', cause = 'board', exit_code = 1");
+    let did = station.run("CAT00002", "mock");
+    assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(did.said.contains("UNSAVED CAT00002: keep this board apart"), "{did:?}");
+    assert!(!did.said.contains("PASS") && !did.said.contains("FAIL"), "{did:?}");
+    assert!((did.said + &did.complained).contains("reads back otherwise than it was written"));
+}
+
+#[test]
+fn a_run_that_got_another_record_of_itself_has_no_verdict() {
+    let mut made = Made::new();
+    let run = Run::of("S1", End::Pass);
+    let (head, plan) = made.begin(&run);
+    let other = Record { seconds: Some(9.5), ..record(head.clone(), plan.clone(), &run) };
+    let other = made.folder().blobs().put(&other.bytes(2).unwrap()).unwrap();
+    enter_otherwise(&made.folder().database(), &format!("record_sha256 = '{other}'"));
+    let read = made.try_finish(&run, head, plan);
+    assert!(matches!(read, Err(StoreError::ReadsOtherwise { .. })), "{read:?}");
 }
