@@ -160,11 +160,20 @@ fn a_station_that_is_kept_waiting_for_seconds_goes_on_working() {
     running.state("1", "READY");
     let process = Pid::from_raw(running.id() as i32);
     kill(process, Signal::SIGSTOP).unwrap();
+    // Longer than the five seconds after which its engine counts as silent.
     thread::sleep(Duration::from_secs(6));
+    let before = waits(process);
     kill(process, Signal::SIGCONT).unwrap();
-    thread::sleep(Duration::from_millis(500));
+    until("the station to have looked after its engine", || waits(process) > before + 1);
     test_again(&mut running);
     assert_eq!(running.end().0, Some(0));
+}
+
+/// How often the first thread of a process has waited for something.
+fn waits(process: Pid) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let count = status.lines().find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"));
+    count.unwrap().trim().parse().unwrap()
 }
 
 /// First the evidence of a run cannot be stored, then it can; the program runs all the time.
