@@ -20,6 +20,7 @@ mod info;
 mod lenses;
 mod load;
 mod made_files;
+mod measured;
 mod origins;
 mod outputs;
 mod paper;
