@@ -1,4 +1,4 @@
-//! The speed of the link over the emulated chip, compared with the chip's own limit. The emulated processor sets the scale.
+//! Prints the speed of the link over the emulated chip. The emulated processor sets the scale, so no speed is too low.
 
 use std::time::{Duration, Instant};
 
@@ -34,17 +34,17 @@ fn of_the_link_and_of_a_run() {
         out_both / 1e6,
         in_both / 1e6
     );
+    assert!(in_alone > 0.0 && out_both > 0.0 && in_both > 0.0, "nothing came through");
     let _board = plug("");
     let ended = halfrow(["verify", "--json", "--board", "usb", "--height", "64", "--frame", "builtin:noise"]);
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let link = &ended.json()["link"];
-    let number = |name: &str| link[name].as_f64().unwrap_or_default();
-    let seconds = number("seconds");
+    let [seconds, out, came, round_trip] =
+        ["seconds", "bytes_out", "bytes_in", "round_trip_us"].map(|name| link[name].as_f64().unwrap());
+    assert!(seconds > 0.0 && out > 0.0 && came > 0.0 && round_trip > 0.0, "{link}");
     println!(
-        "a run: {:.2} MB/s out, {:.2} MB/s in, {:.2} s, round trip {} µs",
-        number("bytes_out") / seconds / 1e6,
-        number("bytes_in") / seconds / 1e6,
-        seconds,
-        number("round_trip_us")
+        "a run: {:.2} MB/s out, {:.2} MB/s in, {seconds:.2} s, round trip {round_trip} µs",
+        out / seconds / 1e6,
+        came / seconds / 1e6
     );
 }
