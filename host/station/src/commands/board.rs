@@ -173,22 +173,18 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let found = PlantPool::new(address).look(boards)?;
             either(&found, *json, |found| text(found))
         }
-        Action::Out(Change { name, why: Why { reason, operator } }) => {
-            let out = at_plant(&address, operator, &format!("board out {name}"))?
-                .take_out(name, reason, operator)?;
-            changed(out, name, "out")
+        Action::Out(Change { name, why }) => {
+            let mut plant = at_plant(&address, &why.operator, &format!("board out {name}"))?;
+            changed(plant.take_out(name, why.by())?, name, "out")
         }
-        Action::In(Change { name, why: Why { reason, operator } }) => changed(
-            at_plant(&address, operator, &format!("board in {name}"))?.put_in(name, reason, operator)?,
-            name,
-            "in",
-        ),
-        Action::Unshare(Change { name, why: Why { reason, operator } }) => changed(
-            at_plant(&address, operator, &format!("board unshare {name}"))?
-                .unshare(name, operator, reason)?,
-            name,
-            "unshared",
-        ),
+        Action::In(Change { name, why }) => {
+            let mut plant = at_plant(&address, &why.operator, &format!("board in {name}"))?;
+            changed(plant.put_in(name, why.by())?, name, "in")
+        }
+        Action::Unshare(Change { name, why }) => {
+            let mut plant = at_plant(&address, &why.operator, &format!("board unshare {name}"))?;
+            changed(plant.unshare(name, why.by())?, name, "unshared")
+        }
         Action::Hold { kind } => hold(&address, kind, &settings.name),
     }
 }

@@ -121,15 +121,13 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let found = PlantPool::new(address).look(|now| jobs(now, &states, "", *most))?;
             either(&found, *json, |found| text(found))
         }
-        Action::Cancel(Change { id, why: Why { reason, operator } }) => {
-            let done = at_plant(&address, operator, &format!("job cancel {id}"))?
-                .cancel_job(id, operator, reason)?;
-            changed(done, id, "cancelled")
+        Action::Cancel(Change { id, why }) => {
+            let mut plant = at_plant(&address, &why.operator, &format!("job cancel {id}"))?;
+            changed(plant.cancel_job(id, why.by())?, id, "cancelled")
         }
-        Action::Retry(Change { id, why: Why { reason, operator } }) => {
-            let done =
-                at_plant(&address, operator, &format!("job retry {id}"))?.retry_job(id, operator, reason)?;
-            changed(done, id, "retried")
+        Action::Retry(Change { id, why }) => {
+            let mut plant = at_plant(&address, &why.operator, &format!("job retry {id}"))?;
+            changed(plant.retry_job(id, why.by())?, id, "retried")
         }
     }
 }

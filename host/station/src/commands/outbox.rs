@@ -100,11 +100,10 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 
 fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> Result<Exit, Failure> {
     let mut store = Store::open_existing(folder)?;
-    let Why { reason, operator } = why;
-    entered(&mut store, operator, &format!("outbox release {}", id.or(sink).unwrap_or_default()))?;
+    entered(&mut store, &why.operator, &format!("outbox release {}", id.or(sink).unwrap_or_default()))?;
     let (released, what) = match (id, sink) {
-        (Some(id), _) => (store.release(id, operator, reason)?, id),
-        (None, Some(sink)) => (store.release_all(sink, operator, reason)?, sink),
+        (Some(id), _) => (store.release(id, why.by())?, id),
+        (None, Some(sink)) => (store.release_all(sink, why.by())?, sink),
         (None, None) => (0, ""),
     };
     if released == 0 {
@@ -119,7 +118,7 @@ fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<
     }
     let mut store = Store::open_existing(folder)?;
     entered(&mut store, &why.operator, &format!("outbox again {sink}"))?;
-    let again = store.send_again(sink, &why.operator, &why.reason)?;
+    let again = store.send_again(sink, why.by())?;
     print(&format!("{again} of {sink} {} sent again", verb(again, "are")))
 }
 
@@ -132,7 +131,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
         return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
     }
     entered(&mut store, &why.operator, &format!("outbox forget {sink}"))?;
-    let forgotten = store.forget_sink(sink, &why.operator, &why.reason)?;
+    let forgotten = store.forget_sink(sink, why.by())?;
     print(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are")))
 }
 

@@ -81,10 +81,9 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let version = Plant::prepare(&address.patient())?;
             print(&format!("the plant {address} has version {version}"))
         }
-        Action::Forget { station, why: Why { reason, operator } } => {
-            if at_plant(&address()?, operator, &format!("plant forget {station}"))?
-                .forget(station, operator, reason)?
-            {
+        Action::Forget { station, why } => {
+            let mut plant = at_plant(&address()?, &why.operator, &format!("plant forget {station}"))?;
+            if plant.forget(station, why.by())? {
                 return print(&format!("the next folder that says it is {station} is taken for it"));
             }
             Err(Failure::call(NoStation { station: station.clone() }))
@@ -94,11 +93,11 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let mut told = progress("runs read");
             check::tell(&check_plant(&snapshot, &mut |runs| told(runs as u64))?, *json)
         }
-        Action::Prune { older_than, why: Why { reason, operator } } => {
+        Action::Prune { older_than, why } => {
             let before_ms = days_ago_ms(*older_than);
             let mut told = progress("rows removed");
-            let removed = at_plant(&address()?.patient(), operator, "plant prune")?
-                .prune(before_ms, operator, reason, &mut told)?;
+            let mut plant = at_plant(&address()?.patient(), &why.operator, "plant prune")?;
+            let removed = plant.prune(before_ms, why.by(), &mut told)?;
             let (rows, were) = (count(removed, "row"), verb(removed, "were"));
             print(&format!("{rows} {were} removed; every record is kept"))
         }

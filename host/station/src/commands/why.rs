@@ -6,7 +6,7 @@ use clap::Args;
 use halfrow::words::plain;
 use nix::unistd::{Uid, User, getuid};
 
-use crate::store::{Plant, PlantAddress, Reason, Store, StoreError};
+use crate::store::{By, Deed, Plant, PlantAddress, Reason, Store, StoreError};
 
 /// What the audit calls a command that somebody gives to do something.
 const ACT: &str = "command";
@@ -20,6 +20,12 @@ pub(super) struct Why {
     /// Your name, which the audit keeps
     #[arg(long, value_name = "NAME", value_parser = person)]
     pub(super) operator: String,
+}
+
+impl Why {
+    pub(super) fn by(&self) -> By<'_> {
+        By { operator: &self.operator, reason: &self.reason }
+    }
 }
 
 /// The name of the person who acts. None is taken from the environment: `sudo -u halfrow` sets USER to a service's account.
@@ -41,12 +47,12 @@ fn some(text: &str, asked: &str) -> Result<String, String> {
 /// Enters in the audit that `operator` gives the command `given`, and by which account. Any name can be written after
 /// `--operator`.
 pub(super) fn entered(store: &mut Store, operator: &str, given: &str) -> Result<(), StoreError> {
-    store.note(operator, ACT, given, &account())
+    store.note(Deed { operator, act: ACT, subject: given, detail: &account() })
 }
 
 /// Enters it in the audit of the plant.
 pub(super) fn entered_at(plant: &mut Plant, operator: &str, given: &str) -> Result<(), StoreError> {
-    plant.note(operator, ACT, given, &account())
+    plant.note(Deed { operator, act: ACT, subject: given, detail: &account() })
 }
 
 /// Connects to the plant at `address`, and enters it there first.

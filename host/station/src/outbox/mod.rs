@@ -305,7 +305,7 @@ fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::Kind;
+    use crate::store::{Deed, Kind};
 
     /// docs/station-results.md: a second, then two, four, up to five minutes.
     #[test]
@@ -341,7 +341,9 @@ mod tests {
     fn store(place: &Folder) -> SharedStore {
         let mut store = crate::store::Store::open(place).unwrap();
         store.sends_to(vec!["mes".to_owned()]).unwrap();
-        ["1", "2", "3"].iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
+        ["1", "2", "3"].iter().for_each(|number| {
+            store.note(Deed { operator: "weber", act: "scan", subject: "1", detail: number }).unwrap();
+        });
         let first = place.due("mes", clock::now_ms(), i64::MAX).unwrap().remove(0);
         let dead = Tried::Dead { said: Said::uncoded("no".to_owned()) };
         store.tried("mes", &[(first, dead)], clock::now_ms()).unwrap();

@@ -3,25 +3,52 @@
 use std::sync::Arc;
 
 use super::database::{Database, DatabaseError, values};
-use super::{Kind, Store, StoreError, outbox, statements as sql};
+use super::{Kind, Reason, Store, StoreError, outbox, statements as sql};
 use crate::clock;
 use crate::ids;
+
+/// Who does something, and why.
+#[derive(Clone, Copy, Debug)]
+pub struct By<'a> {
+    /// Who.
+    pub operator: &'a str,
+    /// Why.
+    pub reason: &'a Reason,
+}
+
+impl<'a> By<'a> {
+    /// That they do `act` with `subject`, for their reason.
+    pub(super) fn does(self, act: &'a str, subject: &'a str) -> Deed<'a> {
+        let Self { operator, reason } = self;
+        Deed { operator, act, subject, detail: reason }
+    }
+}
+
+/// What somebody does, as the audit keeps it.
+#[derive(Clone, Copy, Debug)]
+pub struct Deed<'a> {
+    /// Who does it.
+    pub operator: &'a str,
+    /// The act.
+    pub act: &'a str,
+    /// What it is done with.
+    pub subject: &'a str,
+    /// How, or why.
+    pub detail: &'a str,
+}
 
 /// A line of the audit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line<'a> {
     pub(super) id: &'a str,
     pub(super) at_ms: i64,
-    pub(super) operator: &'a str,
-    pub(super) act: &'a str,
-    pub(super) subject: &'a str,
-    pub(super) detail: &'a str,
+    pub(super) deed: Deed<'a>,
 }
 
 impl Line<'_> {
     /// Enters the line, and an entry of the outbox for every sink.
     pub(super) fn enter(self, to: &mut dyn Database, sinks: &[String]) -> Result<(), DatabaseError> {
-        let Self { id, at_ms, operator, act, subject, detail } = self;
+        let Self { id, at_ms, deed: Deed { operator, act, subject, detail } } = self;
         to.execute(sql::ADD_AUDIT, values![id, at_ms, operator, act, subject, detail])?;
         outbox::enter(to, sinks, Kind::Audit, id)
     }
@@ -42,25 +69,25 @@ impl Line<'_> {
 }
 
 impl Store {
-    /// Enters in the audit that `operator` does `act` with `subject`; `detail` says how.
+    /// Enters a deed in the audit.
     ///
     /// # Errors
     /// [`StoreError`] when the database does not take it.
-    pub fn note(&mut self, operator: &str, act: &str, subject: &str, detail: &str) -> Result<(), StoreError> {
-        self.audited("a line of the audit", [operator, act, subject, detail], |_| Ok(1)).map(drop)
+    pub fn note(&mut self, deed: Deed<'_>) -> Result<(), StoreError> {
+        self.audited("a line of the audit", deed, |_| Ok(1)).map(drop)
     }
 
-    /// Carries out `change`, and enters it in the audit if it changed any row. Returns how many rows it changed.
+    /// Carries out `change`, and enters the deed in the audit if it changed any row. Returns how many rows it changed.
     pub(super) fn audited(
         &mut self,
         doing: &'static str,
-        [operator, act, subject, detail]: [&str; 4],
+        deed: Deed<'_>,
         change: impl FnOnce(&mut dyn Database) -> Result<u64, DatabaseError>,
     ) -> Result<u64, StoreError> {
         let at_ms = clock::now_ms();
         let id = ids::new(at_ms)?.to_string();
         let sinks = Arc::clone(&self.sinks);
-        let line = Line { id: &id, at_ms, operator, act, subject, detail };
+        let line = Line { id: &id, at_ms, deed };
         self.change(doing, |to| line.enter_if_done(to, &sinks, change))
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::audit::Line;
+use super::audit::{Deed, Line};
 use super::database::{Database, DatabaseError, Row, values};
 use super::{Reason, Store, StoreError, statements as sql};
 use crate::clock;
@@ -265,7 +265,8 @@ pub(super) fn rebind(to: &mut dyn Database, change: &Rebinding) -> Result<(), Da
 fn audit(to: &mut dyn Database, sinks: &[String], change: &Rebinding) -> Result<(), DatabaseError> {
     let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
     let detail = serde_json::to_string(&Detail { device: device.clone(), reason: reason.clone() })?;
-    Line { id, at_ms: *at_ms, operator, act: REBIND, subject: unit_id, detail: &detail }.enter(to, sinks)
+    let deed = Deed { operator, act: REBIND, subject: unit_id, detail: &detail };
+    Line { id, at_ms: *at_ms, deed }.enter(to, sinks)
 }
 
 /// Every change by a person, the earliest first.

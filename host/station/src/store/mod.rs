@@ -42,6 +42,7 @@ use std::time::Duration;
 use halfrow::Verdict;
 use uuid::Uuid;
 
+pub use audit::{By, Deed};
 pub(crate) use bindings::is_device;
 pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};

@@ -22,6 +22,11 @@ impl Reason {
             characters => Err(ReasonError::TooLong { characters, most: MOST_REASON }),
         }
     }
+
+    /// The reason of this program itself, whose end is cut off where it is too long.
+    pub(crate) fn of_program(text: &str) -> Self {
+        Self(text.chars().take(MOST_REASON).collect())
+    }
 }
 
 impl Deref for Reason {

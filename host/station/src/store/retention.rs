@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
-use super::audit::Line;
+use super::audit::{Deed, Line};
 use super::database::values;
 use super::{Folder, Snapshot, Store, StoreError, generation, statements as sql};
 use crate::clock;
@@ -107,7 +107,8 @@ impl Store {
         let sinks = Arc::clone(&self.sinks);
         self.change("a line of the audit", |to| {
             for (id, subject) in named.iter().zip(subjects) {
-                Line { id, at_ms, operator, act, subject, detail: why }.enter(to, &sinks)?;
+                let deed = Deed { operator, act, subject, detail: why };
+                Line { id, at_ms, deed }.enter(to, &sinks)?;
             }
             Ok(())
         })

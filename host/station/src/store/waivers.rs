@@ -6,7 +6,7 @@ use halfrow::Verdict;
 use halfrow::words::plain;
 use serde::Serialize;
 
-use super::audit::Line;
+use super::audit::{Deed, Line};
 use super::database::{Database, DatabaseError, values};
 use super::{Kind, Reason, Store, StoreError, outbox, statements as sql};
 use crate::clock;
@@ -79,8 +79,8 @@ impl Store {
             if before.is_none() {
                 to.execute(sql::ADD_WAIVER, values![&id, run, at_ms, operator, reason])?;
                 outbox::enter(to, &sinks, Kind::Waiver, &id)?;
-                let line = Line { id: &audit, at_ms, operator, act: "waive", subject: run, detail: reason };
-                line.enter(to, &sinks)?;
+                let deed = Deed { operator, act: "waive", subject: run, detail: reason };
+                Line { id: &audit, at_ms, deed }.enter(to, &sinks)?;
             }
             Ok(before)
         })?;

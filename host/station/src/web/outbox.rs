@@ -15,7 +15,7 @@ use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::said::Said;
-use crate::store::{DEAD_SHOWN, Dead, Entry, Kind, Reason, Store, Unsent};
+use crate::store::{By, DEAD_SHOWN, Dead, Entry, Kind, Reason, Store, Unsent};
 
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/outbox", Who::Reader, page), act("/outbox/{id}/release", Who::Engineer, release)]
@@ -105,9 +105,12 @@ async fn release(
     let reason = Reason::of(&reason)
         .map_err(|error| Trouble::telling(&visit, StatusCode::BAD_REQUEST, &Said::of(&error)))?;
     let operator = visit.name().to_owned();
-    let release = move |store: &mut Store| match sink {
-        Some(sink) => store.release_at(&sink, &id, &operator, &reason),
-        None => store.release(&id, &operator, &reason),
+    let release = move |store: &mut Store| {
+        let by = By { operator: &operator, reason: &reason };
+        match sink {
+            Some(sink) => store.release_at(&sink, &id, by),
+            None => store.release(&id, by),
+        }
     };
     let released = app.change(&visit, release).await?;
     released.map_err(|error| Trouble::store(&visit, &error))?;

@@ -17,7 +17,7 @@ use crate::history::counts::Tally;
 use crate::plan::Plan;
 use crate::secret::SecretError;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError};
+use crate::store::{Deed, Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError};
 
 /// How many plans are named in the head of a page.
 const NAMED: usize = 2;
@@ -158,14 +158,19 @@ impl App {
         subject: &str,
         detail: &str,
     ) -> Result<(), Trouble> {
-        let [name, subject, detail] = [visit.name(), subject, detail].map(str::to_owned);
+        let [operator, subject, detail] = [visit.name(), subject, detail].map(str::to_owned);
         let entered = match &self.0.source {
             Source::Station(_) => {
-                self.change(visit, move |store| store.note(&name, act, &subject, &detail)).await?
+                let note = move |store: &mut Store| {
+                    store.note(Deed { operator: &operator, act, subject: &subject, detail: &detail })
+                };
+                self.change(visit, note).await?
             }
             Source::Plant(pool) => {
                 let pool = pool.clone();
-                self.blocking(visit, move || pool.note(&name, act, &subject, &detail)).await?
+                let note =
+                    move || pool.note(Deed { operator: &operator, act, subject: &subject, detail: &detail });
+                self.blocking(visit, note).await?
             }
         };
         entered.map_err(|error| {

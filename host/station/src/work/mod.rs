@@ -31,7 +31,9 @@ use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Claim, InLane, Introduction, PlantError, PlantLink, SharedStore, StoreError, Worker};
+use crate::store::{
+    By, Claim, InLane, Introduction, PlantError, PlantLink, Reason, SharedStore, StoreError, Worker,
+};
 
 /// The operator in records and in the plant's audit.
 const OPERATOR: &str = "job";
@@ -182,14 +184,15 @@ impl Work<'_> {
     /// the plant knows, or has been away for some minutes; a program that is to end tries only for a moment.
     fn take_out(&self, board: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
         let station = &self.worker.station;
-        let why = format!(
+        let why = Reason::of_program(&format!(
             "a process of station {station} may still have it, and cannot be killed; restart that computer first"
-        );
+        ));
+        let by = By { operator: OPERATOR, reason: &why };
         for _ in 0..TRIES_OUT {
-            match self.plant.ask(|plant| plant.take_out(board, &why, OPERATOR)) {
+            match self.plant.ask(|plant| plant.take_out(board, by)) {
                 Ok(_) => return,
                 Err(error) => {
-                    tracing::warn!("the board {board} is not out yet ({why}): {}", Said::of(&error));
+                    tracing::warn!("the board {board} is not out yet ({}): {}", &*why, Said::of(&error));
                 }
             }
             rest(AWAY_MS, stop);

@@ -11,7 +11,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
-use halfrow_station::store::Reason;
+use halfrow_station::store::{By, Reason};
 use tempfile::TempDir;
 
 /// A plan whose runs take a moment; `scripts` and `packages` read it, too.
@@ -26,6 +26,11 @@ pub(crate) fn guarded_plan(product: &str, letters: &str) -> String {
 /// Why a person does something.
 pub(crate) fn reason(text: &str) -> Reason {
     Reason::of(text).unwrap()
+}
+
+/// An engineer with a reason.
+pub(crate) fn engel(reason: &Reason) -> By<'_> {
+    By { operator: "engel", reason }
 }
 
 /// Milliseconds since 1970.

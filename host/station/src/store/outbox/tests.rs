@@ -1,4 +1,4 @@
-use super::super::Snapshot;
+use super::super::{Deed, Snapshot};
 use super::*;
 
 /// Failed attempts at times that the test chooses, with the waits of the outbox itself.
@@ -7,7 +7,9 @@ fn what_was_said_last_is_that_of_the_last_try() {
     let folder = tempfile::tempdir().unwrap();
     let mut store = Store::open(&Folder::new(folder.path())).unwrap();
     store.sends_to(vec!["mes".to_owned()]).unwrap();
-    ["1", "2", "3"].into_iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
+    ["1", "2", "3"].into_iter().for_each(|number| {
+        store.note(Deed { operator: "weber", act: "scan", subject: "1", detail: number }).unwrap();
+    });
     let now_ms = clock::now_ms();
     let entries = store.folder().due("mes", now_ms, i64::MAX).unwrap();
     let mut said = |place: usize, tries: u32, at_ms: i64, said: &str| {
@@ -47,7 +49,7 @@ fn what_was_said_to_an_earlier_program_is_told_as_it_is() {
     let folder = Folder::new(folder.path());
     let mut store = Store::open(&folder).unwrap();
     store.sends_to(vec!["mes".to_owned()]).unwrap();
-    store.note("weber", "scan", "1", "1").unwrap();
+    store.note(Deed { operator: "weber", act: "scan", subject: "1", detail: "1" }).unwrap();
     let database = rusqlite::Connection::open(folder.database()).unwrap();
     database.execute("UPDATE outbox SET attempts = 1, said = 'zone unknown'", []).unwrap();
     let unsent = Snapshot::take(&folder).unwrap().unsent().unwrap().remove(0);

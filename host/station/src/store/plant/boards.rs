@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::super::database::{Database, DatabaseError, Row, values};
-use super::super::{Snapshot, StoreError, statements as sql};
+use super::super::{By, Deed, Snapshot, StoreError, statements as sql};
 use super::{LOCK_BOARDS, Plant};
 use crate::clock::{self, Moment};
 use crate::ids;
@@ -108,7 +108,8 @@ impl Plant {
     /// [`StoreError`] when the plant does not take it.
     pub fn share(&mut self, board: &SharedBoard, operator: &str) -> Result<bool, StoreError> {
         let SharedBoard { name, kind, target, product, serial, station, .. } = board;
-        self.audited("to share a board", operator, "share board", name, target, |to| {
+        let deed = Deed { operator, act: "share board", subject: name, detail: target };
+        self.audited("to share a board", deed, |to| {
             // Two who share one unit under two names at once would not see each other's board.
             to.batch(LOCK_BOARDS)?;
             to.execute(sql::ADD_BOARD, values![name, kind, target, product, serial, station])
@@ -126,23 +127,23 @@ impl Plant {
         })
     }
 
-    /// Takes out the board of this name, for this reason: nobody gets it any more, and whoever has it loses it. Returns whether
+    /// Takes out the board of this name: nobody gets it any more, and whoever has it loses it. Returns whether
     /// there is such a board.
     ///
     /// # Errors
     /// Like [`Self::share`].
-    pub fn take_out(&mut self, name: &str, reason: &str, operator: &str) -> Result<bool, StoreError> {
-        self.audited("to take a board out", operator, "board out", name, reason, |to| {
-            to.execute(sql::BOARD_OUT, values![reason, name])
+    pub fn take_out(&mut self, name: &str, by: By<'_>) -> Result<bool, StoreError> {
+        self.audited("to take a board out", by.does("board out", name), |to| {
+            to.execute(sql::BOARD_OUT, values![&**by.reason, name])
         })
     }
 
-    /// Lets the board of this name be given out again, for this reason. Returns whether there is such a board.
+    /// Lets the board of this name be given out again. Returns whether there is such a board.
     ///
     /// # Errors
     /// Like [`Self::share`].
-    pub fn put_in(&mut self, name: &str, reason: &str, operator: &str) -> Result<bool, StoreError> {
-        self.audited("to put a board back", operator, "board in", name, reason, |to| {
+    pub fn put_in(&mut self, name: &str, by: By<'_>) -> Result<bool, StoreError> {
+        self.audited("to put a board back", by.does("board in", name), |to| {
             to.execute(sql::BOARD_OUT, values![None::<&str>, name])
         })
     }
@@ -151,8 +152,8 @@ impl Plant {
     ///
     /// # Errors
     /// Like [`Self::share`].
-    pub fn unshare(&mut self, name: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        self.audited("to unshare a board", operator, "unshare board", name, reason, |to| {
+    pub fn unshare(&mut self, name: &str, by: By<'_>) -> Result<bool, StoreError> {
+        self.audited("to unshare a board", by.does("unshare board", name), |to| {
             to.execute(sql::FORGET_BOARD, values![name])
         })
     }

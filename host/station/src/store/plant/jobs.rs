@@ -6,7 +6,7 @@ use halfrow::Verdict;
 use serde::Serialize;
 
 use super::super::database::{Database, DatabaseError, FromValue, Row, Value, values};
-use super::super::{AgainError, Snapshot, StoreError, retest_policy, statements as sql};
+use super::super::{AgainError, By, Deed, Snapshot, StoreError, retest_policy, statements as sql};
 use super::boards::{LEASE_MS, Lease, hold};
 use super::{Plant, arrived};
 use crate::plan::{Again, Plan};
@@ -180,7 +180,8 @@ impl Plant {
         let needs = needs.join(" ");
         let subject = added.first().cloned().unwrap_or_default();
         let detail = format!("{count} of {} {} for {} {serial}{kind}", plan.name, plan.version, plan.product);
-        self.audited("to add jobs", operator, "add job", &subject, &detail, |to| {
+        let deed = Deed { operator, act: "add job", subject: &subject, detail: &detail };
+        self.audited("to add jobs", deed, |to| {
             arrived::plan(to, plan, at_ms)?;
             added.iter().try_fold(0, |done, id| {
                 let of = values![id, &plan.sha256, &plan.product, serial, kind, &needs, *priority, *operator];
@@ -190,13 +191,13 @@ impl Plant {
         Ok(added)
     }
 
-    /// Cancels the job, for this reason; whoever has it loses it. Returns whether it was waiting or claimed.
+    /// Cancels the job; whoever has it loses it. Returns whether it was waiting or claimed.
     ///
     /// # Errors
     /// Like [`Self::add_jobs`].
-    pub fn cancel_job(&mut self, id: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        self.audited("to cancel a job", operator, "cancel job", id, reason, |to| {
-            to.execute(sql::CANCEL_JOB, values![reason, id])
+    pub fn cancel_job(&mut self, id: &str, by: By<'_>) -> Result<bool, StoreError> {
+        self.audited("to cancel a job", by.does("cancel job", id), |to| {
+            to.execute(sql::CANCEL_JOB, values![&**by.reason, id])
         })
     }
 
@@ -204,10 +205,8 @@ impl Plant {
     ///
     /// # Errors
     /// Like [`Self::add_jobs`].
-    pub fn retry_job(&mut self, id: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        self.audited("to retry a job", operator, "retry job", id, reason, |to| {
-            to.execute(sql::RETRY_JOB, values![id])
-        })
+    pub fn retry_job(&mut self, id: &str, by: By<'_>) -> Result<bool, StoreError> {
+        self.audited("to retry a job", by.does("retry job", id), |to| to.execute(sql::RETRY_JOB, values![id]))
     }
 
     /// Gives `worker` the first job that it can judge, with a board; none if there is none for now.

@@ -26,7 +26,7 @@ pub(crate) use pool::PlantPool;
 use std::path::PathBuf;
 
 use super::database::{Database, DatabaseError, values};
-use super::{Parcel, StoreError, migrations, statements as sql};
+use super::{By, Parcel, StoreError, migrations, statements as sql};
 use crate::clock::{self, HeardClock};
 use crate::trust::CertificateError;
 
@@ -230,8 +230,8 @@ impl Plant {
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
-    pub fn forget(&mut self, station: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        self.audited("to forget a station", operator, "forget station", station, reason, |to| {
+    pub fn forget(&mut self, station: &str, by: By<'_>) -> Result<bool, StoreError> {
+        self.audited("to forget a station", by.does("forget station", station), |to| {
             to.execute(sql::FORGET_STATION, values![station])
         })
     }

@@ -1,7 +1,7 @@
 //! Plans that the plant publishes, as engineers have signed them.
 
 use super::super::database::values;
-use super::super::{Snapshot, StoreError, statements as sql};
+use super::super::{Deed, Snapshot, StoreError, statements as sql};
 use super::Plant;
 use crate::clock;
 use crate::history::PlanName;
@@ -60,7 +60,8 @@ impl Plant {
         let text = statement.text();
         let at_ms = clock::now_ms();
         let subject = format!("{product}/{name} {version}");
-        self.audited("to publish a plan", operator, "publish plan", &subject, reason, |to| {
+        let deed = Deed { operator, act: "publish plan", subject: &subject, detail: reason };
+        self.audited("to publish a plan", deed, |to| {
             if let Some(bundle) = bundle {
                 to.execute(sql::ADD_BUNDLE, values![sha256, &bundle.text()])?;
             }

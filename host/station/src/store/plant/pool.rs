@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::super::{Snapshot, StoreError};
+use super::super::{Deed, Snapshot, StoreError};
 use super::{Plant, PlantAddress};
 
 /// How many connections are kept while nobody looks.
@@ -44,18 +44,12 @@ impl PlantPool {
         found
     }
 
-    /// Enters in the plant's audit that `operator` does `act` with `subject`; `detail` says how.
+    /// Enters a deed in the plant's audit.
     ///
     /// # Errors
     /// Like [`Self::look`].
-    pub(crate) fn note(
-        &self,
-        operator: &str,
-        act: &str,
-        subject: &str,
-        detail: &str,
-    ) -> Result<(), StoreError> {
-        Plant::connect(&self.0.address)?.note(operator, act, subject, detail)
+    pub(crate) fn note(&self, deed: Deed<'_>) -> Result<(), StoreError> {
+        Plant::connect(&self.0.address)?.note(deed)
     }
 
     /// A snapshot by a connection that was kept, or by a new one if there is none or it has ended meanwhile.

@@ -1,7 +1,7 @@
 //! Rows of old runs that serve only to be searched: the records have all of their content.
 
 use super::super::database::values;
-use super::super::{Snapshot, StoreError, statements as sql};
+use super::super::{By, Snapshot, StoreError, statements as sql};
 use super::Plant;
 use crate::ids;
 
@@ -18,12 +18,11 @@ impl Plant {
     pub fn prune(
         &mut self,
         before_ms: i64,
-        operator: &str,
-        reason: &str,
+        by: By<'_>,
         told: &mut dyn FnMut(u64),
     ) -> Result<u64, StoreError> {
         let bound = ids::first_of(before_ms);
-        self.audited("to be pruned", operator, PRUNE, &bound, reason, |_| Ok(1))?;
+        self.audited("to be pruned", by.does(PRUNE, &bound), |_| Ok(1))?;
         let (mut after, mut removed) = (String::new(), 0);
         loop {
             let last: Option<String> = self.carry_out("to tell old runs", |database| {

@@ -8,7 +8,7 @@ use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
 use serde_json::Value;
 
 use super::{any, board, job, plan, run_out, settings, shared, with_a_job, worker};
-use crate::common::{program, until};
+use crate::common::{engel, program, reason, until};
 use crate::plant::server::Server;
 
 fn waiter(name: &str) -> Waiter {
@@ -73,13 +73,13 @@ fn a_board_that_was_taken_over_or_out_is_held_no_more() {
     run_out(&server);
     let Turn::Held(second) = plant.wait(&waiter("second")).unwrap() else { panic!("it is free again") };
     assert!(!plant.renew(&first).unwrap() && plant.renew(&second).unwrap());
-    assert!(plant.take_out("shelf-0", "it smells", "engel").unwrap());
+    assert!(plant.take_out("shelf-0", engel(&reason("it smells"))).unwrap());
     assert!(!plant.renew(&second).unwrap());
     plant.give_back(&second).unwrap();
     assert_eq!(plant.wait(&waiter("third")).unwrap(), Turn::Never);
-    assert!(plant.put_in("shelf-0", "it was cleaned", "engel").unwrap());
+    assert!(plant.put_in("shelf-0", engel(&reason("it was cleaned"))).unwrap());
     assert!(matches!(plant.wait(&waiter("third")).unwrap(), Turn::Held(_)));
-    assert!(!plant.put_in("shelf-9", "it was cleaned", "engel").unwrap());
+    assert!(!plant.put_in("shelf-9", engel(&reason("it was cleaned"))).unwrap());
     let told = server.rows("SELECT act, detail FROM audit WHERE act LIKE 'board %' ORDER BY id");
     assert_eq!(told, [["board out", "it smells"], ["board in", "it was cleaned"]]);
 }
@@ -136,7 +136,7 @@ fn what_those_in_front_are_to_get_is_left_to_them() {
     let (server, mut plant) = one_for_all_and_one_for_a();
     let [first, second, b] = waiting([("first", "A"), ("second", "A"), ("b", "B")]);
     for number in 0..2 {
-        assert!(plant.take_out(&format!("shelf-{number}"), "it smells", "engel").unwrap());
+        assert!(plant.take_out(&format!("shelf-{number}"), engel(&reason("it smells"))).unwrap());
     }
     // Boards that are out are offered to nobody, so both wait without one.
     for waiter in [&first, &second] {
@@ -150,7 +150,7 @@ fn what_those_in_front_are_to_get_is_left_to_them() {
         server.client("plant").batch_execute(&wait).unwrap();
     }
     for number in 0..2 {
-        assert!(plant.put_in(&format!("shelf-{number}"), "it was cleaned", "engel").unwrap());
+        assert!(plant.put_in(&format!("shelf-{number}"), engel(&reason("it was cleaned"))).unwrap());
     }
     assert_eq!(got(&mut plant, &b), Err(2), "one of their own, and the other one");
     assert_eq!(got(&mut plant, &second), Ok("shelf-0".to_owned()), "their own is the first's");
@@ -263,7 +263,7 @@ fn a_board_is_held_until_stdin_ends_and_the_next_one_gets_it() {
     let mut client = server.client("plant");
     assert_eq!(client.execute("UPDATE board SET until_ms = 0", &[]).unwrap(), 1);
     assert_eq!(third.tells("held")["fence"], 3);
-    assert!(plant.take_out("shelf-0", "it smells", "engel").unwrap());
+    assert!(plant.take_out("shelf-0", engel(&reason("it smells"))).unwrap());
     // The holder checks its lease every ten seconds.
     assert!(third.tells("lost")["said"].as_str().unwrap().contains("not ours any more"));
     assert_eq!(third.process.wait().unwrap().code(), Some(3));

@@ -10,6 +10,7 @@ use halfrow_station::record::{JobClaim, Record, RunCause};
 use halfrow_station::store::{Claim, Entry, JobState, Kind, Parcel, Plant, Snapshot, Wanted, Worker, jobs};
 
 use super::{any, board, job, plan, run_out, shared, with_a_job, worker};
+use crate::common::{engel, reason};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 use crate::plant::server::Server;
 
@@ -150,8 +151,8 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     }
     assert_eq!(plant.claim(&worker("12")).unwrap(), None);
     assert_eq!(states(&server), [["dead", "5"]]);
-    assert!(plant.retry_job(&id, "engel", "the cable is new").unwrap());
-    assert!(!plant.retry_job(&id, "engel", "twice").unwrap());
+    assert!(plant.retry_job(&id, engel(&reason("the cable is new"))).unwrap());
+    assert!(!plant.retry_job(&id, engel(&reason("twice"))).unwrap());
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
     // A job that was not begun costs no attempt.
     plant.decline(&claim, None).unwrap();
@@ -181,7 +182,7 @@ fn a_job_is_listed_as_what_the_next_claim_makes_of_it() {
         }
     }
     assert_eq!(states(&server), [["claimed", "5"]], "nobody has asked");
-    assert!(plant.retry_job(&id, "engel", "the cable is new").unwrap());
+    assert!(plant.retry_job(&id, engel(&reason("the cable is new"))).unwrap());
     assert!(plant.claim(&worker("12")).unwrap().is_some());
 }
 
@@ -264,8 +265,9 @@ fn the_run_of_the_last_claim_counts_however_late_it_comes() {
     assert_eq!(server.rows("SELECT runs, units, passed FROM day_count"), [["1", "1", "1"]]);
     assert_well(&server);
     // Meanwhile an engineer wants the job judged again; nobody has claimed it since.
-    let retry =
-        |plant: &mut Plant, id: &str| assert!(plant.retry_job(id, "engel", "the cable is new").unwrap());
+    let retry = |plant: &mut Plant, id: &str| {
+        assert!(plant.retry_job(id, engel(&reason("the cable is new"))).unwrap());
+    };
     let server = fifth_claim(End::Fail(&["clock"]), retry);
     assert_eq!(server.rows(done), [["done", "1", "NULL"]]);
     assert_well(&server);
@@ -278,14 +280,15 @@ fn the_run_of_the_last_claim_counts_however_late_it_comes() {
 
 #[test]
 fn what_a_claim_judged_before_a_person_cancelled_the_job_or_another_one_claimed_it_does_not_count() {
-    let retry = |plant: &mut Plant, id: &str| assert!(plant.retry_job(id, "engel", "after all").unwrap());
+    let retry =
+        |plant: &mut Plant, id: &str| assert!(plant.retry_job(id, engel(&reason("after all"))).unwrap());
     let again = |plant: &mut Plant, id: &str| {
         retry(plant, id);
         plant.claim(&worker("12")).unwrap().unwrap();
     };
     let cancelled = |plant: &mut Plant, id: &str| {
         retry(plant, id);
-        assert!(plant.cancel_job(id, "engel", "a mistake").unwrap());
+        assert!(plant.cancel_job(id, engel(&reason("a mistake"))).unwrap());
         retry(plant, id);
     };
     for end in [End::Pass, End::Error(RunCause::Link)] {
@@ -316,7 +319,7 @@ fn a_claim_judges_once() {
 fn a_job_that_is_cancelled_is_lost_to_whoever_has_it() {
     let (server, mut plant, id) = with_a_job();
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
-    assert!(plant.cancel_job(&id, "engel", "a mistake").unwrap());
+    assert!(plant.cancel_job(&id, engel(&reason("a mistake"))).unwrap());
     assert!(!plant.renew_claim(&claim).unwrap());
     plant.take(&run_of(&claim, 1, End::Pass)).unwrap();
     assert_eq!(server.rows("SELECT nth FROM run"), [["0"]]);

@@ -11,7 +11,7 @@ use halfrow_station::settings::Settings;
 use halfrow_station::store::{Parcel, SINK_OF_PLANT};
 
 use super::{at_work, judged, settings, with_a_job};
-use crate::common::{folder, program};
+use crate::common::{engel, folder, program, reason};
 
 /// Whether the plant has the run of a job, and whether the run counts there, if the outbox `sends`, and if a person cancels the
 /// job while the result is being saved.
@@ -30,7 +30,7 @@ fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
     let mut heard = |stage: Stage<'_>| {
         if matches!(stage, Stage::Saving { .. }) {
             is_over.set(!sends);
-            assert!(!is_cancelled || plant.cancel_job(&id, "engel", "a mistake").unwrap());
+            assert!(!is_cancelled || plant.cancel_job(&id, engel(&reason("a mistake"))).unwrap());
         }
     };
     let judged = work.judge(claim, &stop, &mut heard).unwrap();

@@ -15,7 +15,7 @@ use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::{any, job, plan, run_out, settings, shared};
-use crate::common::{Did, HANG, program, query, until};
+use crate::common::{Did, HANG, engel, program, query, reason, until};
 use crate::plant::clocks::FAST;
 use crate::plant::server::Server;
 
@@ -218,7 +218,7 @@ fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() 
     let (folder, mut command) = work(&server, "12");
     let worker = command.spawn().unwrap();
     until_claimed(&server);
-    assert!(plant.cancel_job(&id, "engel", "a mistake").unwrap());
+    assert!(plant.cancel_job(&id, engel(&reason("a mistake"))).unwrap());
     let did = Did::from(worker.wait_with_output().unwrap());
     let ended: Value = serde_json::from_str(&did.said).unwrap();
     let headline = ended["headline"].as_str().unwrap();

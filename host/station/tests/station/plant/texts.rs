@@ -1,7 +1,7 @@
 //! Text that PostgreSQL cannot hold.
 
 use halfrow_station::history::runs::{Filter, page};
-use halfrow_station::store::{Plant, Snapshot};
+use halfrow_station::store::{Deed, Plant, Snapshot};
 
 use super::sent::send;
 use super::server::Server;
@@ -18,7 +18,7 @@ fn no_character_keeps_a_result_from_the_plant() {
     let run = Run { operator: "we\0ber".to_owned(), ..Run::of("S1", End::Fail(&["memory"])) };
     let run = made.run(&run);
     made.store.waive(&run, "engel", &reason("used\0as it is")).unwrap();
-    made.store.note("weber", "scan", "CA\0", "").unwrap();
+    made.store.note(Deed { operator: "weber", act: "scan", subject: "CA\0", detail: "" }).unwrap();
     let (made, all) = send(made, server.address());
     // A run, a waiver with its line in the audit, and a further line.
     assert_eq!((all.sent, all.failed), (4, 0));

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use halfrow_station::store::{Folder, Store};
+use halfrow_station::store::{Deed, Folder, Store};
 
 use super::server::Server;
 use crate::common::{plant_settings, until, until_found};
@@ -65,7 +65,7 @@ fn no_more_is_judged_than_may_be_unsent() {
     // What people did is sent, too, but is no result.
     let mut store = Store::open(&Folder::new(&station.path("data"))).unwrap();
     for _ in 0..5 {
-        store.note("weber", "login", "", "").unwrap();
+        store.note(Deed { operator: "weber", act: "login", subject: "", detail: "" }).unwrap();
     }
     drop(store);
     let mut running = station.start();

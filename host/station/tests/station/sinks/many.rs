@@ -1,7 +1,7 @@
 //! A sink that has refused very many entries.
 
 use halfrow_station::said::{Said, Saying};
-use halfrow_station::store::Tried;
+use halfrow_station::store::{Deed, Tried};
 
 use super::did;
 use crate::common::now_ms;
@@ -12,7 +12,10 @@ use crate::history::served::Served;
 fn refused(many: usize) -> Made {
     let mut made = Made::new();
     made.store.sends_to(vec!["mes".to_owned()]).unwrap();
-    (0..many).for_each(|number| made.store.note("weber", "scan", "1", &number.to_string()).unwrap());
+    for number in 0..many {
+        let number = number.to_string();
+        made.store.note(Deed { operator: "weber", act: "scan", subject: "1", detail: &number }).unwrap();
+    }
     loop {
         let due = made.store.folder().due("mes", now_ms(), i64::MAX).unwrap();
         if due.is_empty() {

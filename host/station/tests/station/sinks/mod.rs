@@ -14,7 +14,7 @@ use std::process::Command;
 use halfrow_station::outbox::{Round, Sink, Standing, Undelivered, round};
 use halfrow_station::said::Saying;
 use halfrow_station::settings::Settings;
-use halfrow_station::store::{Folder, Parcel, SharedStore, Snapshot, Store, Tried};
+use halfrow_station::store::{Deed, Folder, Parcel, SharedStore, Snapshot, Store, Tried};
 
 use crate::common::{Did, PLAN, now_ms, program};
 
@@ -173,7 +173,7 @@ fn what_a_sink_has_is_known_before_it_has_all_that_comes_after_it() {
     let mut store = Store::open(&folder).unwrap();
     store.sends_to(vec!["mes".to_owned()]).unwrap();
     for number in ["1", "2", "3"] {
-        store.note("weber", "scan", "1", number).unwrap();
+        store.note(Deed { operator: "weber", act: "scan", subject: "1", detail: number }).unwrap();
     }
     let (store, mut sink) = (SharedStore::new(store), Looking { folder, unsent: Vec::new() });
     assert_eq!(
@@ -192,7 +192,7 @@ fn what_waits_for_a_time_of_a_wrong_clock_is_sent_all_the_same() {
     let mut store = Store::open(&folder).unwrap();
     store.sends_to(vec!["mes".to_owned()]).unwrap();
     for (wait_ms, sent) in [(200_000, 0), (86_400_000, 1)] {
-        store.note("weber", "scan", "1", "1").unwrap();
+        store.note(Deed { operator: "weber", act: "scan", subject: "1", detail: "1" }).unwrap();
         let entry = folder.due("mes", now_ms(), i64::MAX).unwrap().remove(0);
         let again = Tried::Again { next_ms: now_ms() + wait_ms, said: Saying::NotAtPlant.into() };
         store.tried("mes", &[(entry, again)], now_ms()).unwrap();

@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 use halfrow_station::store::{Plant, PlantAddress, PlantLink};
 use tempfile::TempDir;
 
-use crate::common::Over;
+use crate::common::{Over, engel, reason};
 use crate::history::generated::Draw;
 use crate::jobs::{any, board, job, plan, run_out};
 use crate::plant::server::Server;
@@ -186,7 +186,7 @@ impl Trial {
         for dead in server.rows("SELECT id FROM job WHERE state = 'dead'") {
             let plant = PlantLink::new(server.address());
             plant
-                .ask(|plant| plant.retry_job(&dead[0], "engel", "five stations in a row were killed"))
+                .ask(|plant| plant.retry_job(&dead[0], engel(&reason("five stations in a row were killed"))))
                 .unwrap();
         }
         server.rows("SELECT count(*) FROM job WHERE state = 'done'")[0][0].parse().unwrap()
