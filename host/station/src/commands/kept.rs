@@ -8,14 +8,14 @@ use halfrow_program::number::counted;
 use serde_json::json;
 
 use super::looking::Data;
-use super::why::{entered, person};
+use super::why::{at_station, person};
 use super::{Failure, document, print};
 use crate::clock;
 use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
 use crate::said::Said;
-use crate::store::{Folder, Store};
+use crate::store::Folder;
 
 /// Copy all that the station has kept to a new folder, while runs go on
 ///
@@ -102,8 +102,8 @@ pub(super) struct Prune {
 
 pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
     let Prune { data, older_than, operator, json } = arguments;
-    let mut store = Store::open_existing(&data.folder())?;
-    entered(&mut store, operator, &format!("prune {}", data.folder().path().display()))?;
+    let folder = data.folder();
+    let mut store = at_station(&folder, operator, &format!("prune {}", folder.path().display()))?;
     let old = match older_than {
         Some(days) => kept::prune(&mut store, days_ago_ms(*days), operator)?,
         None => Pruned::default(),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::beginning::{Disk, SettingsFile, sinks};
 use super::looking::{either, table, time};
-use super::why::{Why, entered};
+use super::why::{Why, at_station};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::outbox::{OutboxError, all};
@@ -99,8 +99,8 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 }
 
 fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> Result<Exit, Failure> {
-    let mut store = Store::open_existing(folder)?;
-    entered(&mut store, &why.operator, &format!("outbox release {}", id.or(sink).unwrap_or_default()))?;
+    let given = format!("outbox release {}", id.or(sink).unwrap_or_default());
+    let mut store = at_station(folder, &why.operator, &given)?;
     let (released, what) = match (id, sink) {
         (Some(id), _) => (store.release(id, why.by())?, id),
         (None, Some(sink)) => (store.release_all(sink, why.by())?, sink),
@@ -116,8 +116,7 @@ fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<
     if !settings.sink_names().any(|name| name == sink) {
         return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
     }
-    let mut store = Store::open_existing(folder)?;
-    entered(&mut store, &why.operator, &format!("outbox again {sink}"))?;
+    let mut store = at_station(folder, &why.operator, &format!("outbox again {sink}"))?;
     let again = store.send_again(sink, why.by())?;
     print(&format!("{again} of {sink} {} sent again", verb(again, "are")))
 }
@@ -126,11 +125,10 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
     if settings.sink_names().any(|name| name == sink) {
         return Err(Failure::call(SinkInUse { sink: sink.to_owned() }));
     }
-    let mut store = Store::open_existing(folder)?;
+    let mut store = at_station(folder, &why.operator, &format!("outbox forget {sink}"))?;
     if !Snapshot::take(folder)?.unsent()?.iter().any(|unsent| unsent.sink == sink) {
         return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
     }
-    entered(&mut store, &why.operator, &format!("outbox forget {sink}"))?;
     let forgotten = store.forget_sink(sink, why.by())?;
     print(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are")))
 }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::why::{Why, entered};
+use super::why::{Why, at_station};
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::store::{Change, Folder, RebindError, Store, is_device};
+use crate::store::{Change, Folder, RebindError, is_device};
 
 /// Say that a serial number has another device from now on
 ///
@@ -37,8 +37,7 @@ fn device(text: &str) -> Result<String, String> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Arguments { data, serial, device, product, why: Why { reason, operator } } = arguments;
-    let mut store = Store::open_existing(&Folder::new(data))?;
-    entered(&mut store, operator, &format!("rebind {serial}"))?;
+    let mut store = at_station(&Folder::new(data), operator, &format!("rebind {serial}"))?;
     let change = Change { serial, product: product.as_deref(), device: device.as_deref(), operator, reason };
     let bound = store.rebind(&change)?;
     let from_now = device.as_deref().map_or_else(

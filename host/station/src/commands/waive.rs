@@ -5,10 +5,10 @@ use halfrow::words::plain;
 
 use super::Failure;
 use super::looking::Data;
-use super::why::{Why, entered};
+use super::why::{Why, at_station};
 use crate::console;
 use crate::exit::Exit;
-use crate::store::{NoWaiver, Store};
+use crate::store::NoWaiver;
 
 /// Waive the FAIL of a run: it stays FAIL, and everyone sees who waived it and why
 ///
@@ -26,8 +26,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(Arguments { run, data, why }: &Arguments) -> Result<Exit, Failure> {
     let Why { reason, operator } = why;
-    let mut store = Store::open_existing(&data.folder())?;
-    entered(&mut store, operator, &format!("waive {run}"))?;
+    let mut store = at_station(&data.folder(), operator, &format!("waive {run}"))?;
     let waiver = store.waive(run, operator, reason)?;
     let said = format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason);
     console::tell(&plain(&said));

@@ -6,7 +6,7 @@ use clap::Args;
 use halfrow::words::plain;
 use nix::unistd::{Uid, User, getuid};
 
-use crate::store::{By, Deed, Plant, PlantAddress, Reason, Store, StoreError};
+use crate::store::{By, Deed, Folder, Plant, PlantAddress, Reason, Store, StoreError};
 
 /// What the audit calls a command that somebody gives to do something.
 const ACT: &str = "command";
@@ -44,10 +44,12 @@ fn some(text: &str, asked: &str) -> Result<String, String> {
     if text.is_empty() { Err(asked.to_owned()) } else { Ok(text.to_owned()) }
 }
 
-/// Enters in the audit that `operator` gives the command `given`, and by which account. Any name can be written after
-/// `--operator`.
-pub(super) fn entered(store: &mut Store, operator: &str, given: &str) -> Result<(), StoreError> {
-    store.note(Deed { operator, act: ACT, subject: given, detail: &account() })
+/// Opens the store in `folder`, and enters in its audit first that `operator` gives the command `given`, and by which account. Any
+/// name can be written after `--operator`.
+pub(super) fn at_station(folder: &Folder, operator: &str, given: &str) -> Result<Store, StoreError> {
+    let mut store = Store::open_existing(folder)?;
+    store.note(Deed { operator, act: ACT, subject: given, detail: &account() })?;
+    Ok(store)
 }
 
 /// Enters it in the audit of the plant.
