@@ -13,7 +13,7 @@ use super::unnamed::beyond_rows;
 use crate::check::{Fault, check, foreign};
 use crate::published::{BundleError, KeptPlans};
 use crate::record::{BlobError, Blobs, Piece, synced};
-use crate::store::{ASIDE, Folder, Snapshot, Store, StoreError};
+use crate::store::{ASIDE, Folder, LOCK, Snapshot, Store, StoreError};
 
 /// What was copied.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -162,7 +162,7 @@ fn private_folder(path: &Path) -> io::Result<()> {
 /// Whether `folder` has anything but what a file system is created with, and the lock that a killed restore leaves.
 fn holds_anything(folder: &Path) -> io::Result<bool> {
     let names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<io::Result<Vec<_>>>()?;
-    Ok(names.iter().any(|name| name != "lost+found" && name != "station.lock"))
+    Ok(names.iter().any(|name| name != "lost+found" && name != LOCK))
 }
 
 /// Moves what is in `aside` to the folder `to` around it, the database last, because without it nothing is a copy. If
@@ -223,7 +223,7 @@ fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Cop
     };
     File::open(to.database()).and_then(private).map_err(refused)?;
     let spools = to.spools();
-    let (blobs, plans) = (aside.join("blobs"), KeptPlans::of(aside));
+    let (blobs, plans) = (to.evidence(), KeptPlans::of(aside));
     for folder in [&spools, &blobs, plans.folder()] {
         private_folder(folder).map_err(refused)?;
     }

@@ -25,6 +25,8 @@ const AGAIN: Duration = Duration::from_millis(20);
 
 /// The name of an unfinished copy, within the folder where the copy is to be.
 pub(crate) const ASIDE: &str = ".partial";
+/// The name of the file that is locked by the program that writes.
+pub(crate) const LOCK: &str = "station.lock";
 
 /// The folder of a station.
 #[derive(Clone, Debug)]
@@ -94,7 +96,7 @@ impl Folder {
 
     /// Refuses a folder that was moved away since the start, or whose disk was unmounted: the start made `blobs` in it.
     pub(crate) fn refuse_gone(&self) -> Result<(), StoreError> {
-        fs::metadata(self.0.join("blobs")).map(drop).map_err(|source| self.refused(source))
+        fs::metadata(self.evidence()).map(drop).map_err(|source| self.refused(source))
     }
 
     /// Refuses a folder that has evidence, or a log, and no database or an empty file: no station may start from scratch there,
@@ -120,7 +122,12 @@ impl Folder {
     /// The evidence.
     #[must_use]
     pub fn blobs(&self) -> Blobs {
-        Blobs::new(self.0.join("blobs"))
+        Blobs::new(self.evidence())
+    }
+
+    /// The folder of all evidence.
+    pub(crate) fn evidence(&self) -> PathBuf {
+        self.0.join("blobs")
     }
 
     /// The folder of what the run of this id writes down while it is under way.
@@ -141,7 +148,7 @@ impl Folder {
 
     /// The file that is locked by the program that writes.
     pub(crate) fn lock_file(&self) -> PathBuf {
-        self.0.join("station.lock")
+        self.0.join(LOCK)
     }
 
     /// The right to write to the folder, which must exist. It lasts as long as the file is open.
@@ -238,7 +245,7 @@ impl Folder {
     /// no log can be made, that is so unless another user's station starts meanwhile.
     fn opened_to_read(&self) -> Result<Connection, rusqlite::Error> {
         let (path, flags) = (self.database(), OpenFlags::SQLITE_OPEN_READ_ONLY);
-        let has_log = path.with_extension("db-wal").try_exists().unwrap_or(true);
+        let has_log = log_of(&path).try_exists().unwrap_or(true);
         let reader = if !has_log && self.may_only_be_read() {
             Connection::open_with_flags(unchanging(&path), flags | OpenFlags::SQLITE_OPEN_URI)?
         } else {
@@ -252,6 +259,11 @@ impl Folder {
     fn may_only_be_read(&self) -> bool {
         matches!(access(&self.0, AccessFlags::W_OK), Err(Errno::EACCES | Errno::EROFS))
     }
+}
+
+/// The write-ahead log of the file `database`.
+pub(super) fn log_of(database: &Path) -> PathBuf {
+    database.with_extension("db-wal")
 }
 
 /// How many tables and indices the database has.

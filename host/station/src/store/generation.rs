@@ -14,6 +14,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use nix::fcntl::OFlag;
 use rusqlite::{Connection, ffi};
 
+use super::folder::log_of;
 use super::{Database, DatabaseError, Folder, StoreError};
 use crate::ids;
 
@@ -161,7 +162,7 @@ pub(super) enum Log {
 
 /// Whether a log with pages was left in `folder`.
 pub(super) fn has_left_log(folder: &Folder) -> bool {
-    fs::metadata(folder.database().with_extension("db-wal")).is_ok_and(|log| log.len() > EMPTY_LOG)
+    fs::metadata(log_of(&folder.database())).is_ok_and(|log| log.len() > EMPTY_LOG)
 }
 
 /// Examines the log that was left in `folder`, in which nobody works, before a connection plays it into the database.

@@ -10,6 +10,7 @@ use halfrow::result::sha256;
 use nix::sys::statvfs::statvfs;
 
 use super::database::{Database, DatabaseError, Engine, values};
+use super::folder::log_of;
 use super::statements::{SCHEMA_VERSION, SCHEMAS};
 use super::{StoreError, generation};
 use crate::record::synced;
@@ -86,7 +87,7 @@ fn refuse_full_disk(path: &Path) -> Result<(), StoreError> {
     // Some file systems do not report it.
     let free = (disk.blocks() > 0).then(|| disk.blocks_available() * disk.fragment_size());
     // Where there is no log, it has no bytes.
-    let log = fs::metadata(path.with_extension("db-wal")).map_or(0, |log| log.len());
+    let log = fs::metadata(log_of(path)).map_or(0, |log| log.len());
     let bytes = fs::metadata(path).map_err(refused)?.len() + log;
     match missing(bytes, free) {
         0 => Ok(()),

@@ -47,8 +47,8 @@ pub(crate) use bindings::is_device;
 pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
-pub(crate) use folder::ASIDE;
 pub use folder::Folder;
+pub(crate) use folder::{ASIDE, LOCK};
 use generation::{Log, Opened};
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub(crate) use outbox::{DEAD_SHOWN, FIRST_WAIT_MS, LONGEST_WAIT_MS};
@@ -135,9 +135,9 @@ impl Store {
     pub fn open(folder: &Folder) -> Result<Self, StoreError> {
         folder.refuse_path()?;
         folder.refuse_unfinished_restore()?;
-        for place in ["blobs", "spool"] {
+        for place in [folder.evidence(), folder.spools()] {
             // Whatever the umask, nobody else may put another database there.
-            let made = DirBuilder::new().recursive(true).mode(0o750).create(folder.0.join(place));
+            let made = DirBuilder::new().recursive(true).mode(0o750).create(place);
             made.map_err(|source| folder.refused(source))?;
         }
         let lock = folder.lock()?;
