@@ -22,7 +22,7 @@ use crate::guard::guarded;
 use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::published::{
-    Bundle, BundleError, FetchError, Fetched, KeptPlans, Offer, PublicKey, SigningError, SigningKey,
+    Bundle, BundleError, FetchError, Fetched, KeptPlans, Offer, PublicKey, Signed, SigningError, SigningKey,
     Statement, look_whole, offered,
 };
 use crate::said::Said;
@@ -133,8 +133,8 @@ pub(super) fn publish(Publish { settings, file, signer }: &Publish) -> Result<Ex
     let mut desk = signer.desk(settings)?;
     // Whoever signed it, runs may have been judged by it.
     let before = desk.at.published_version(&name, &plan.version)?;
-    let is_other = |(text, _): &(String, String)| {
-        serde_json::from_str(text).map_or(true, |before: Statement| before.sha256 != plan.sha256)
+    let is_other = |before: &Signed| {
+        serde_json::from_str(&before.statement).map_or(true, |before: Statement| before.sha256 != plan.sha256)
     };
     if before.as_ref().is_some_and(is_other) {
         let version = plan.version.clone();
@@ -179,8 +179,8 @@ struct Desk<'a> {
 
 impl Desk<'_> {
     /// What was stated about this plan, if somebody who is trusted signed it.
-    fn trusted(&self, name: &PlanName, (text, signature): &(String, String)) -> Result<Statement, Failure> {
-        Statement::signed(text, signature, &self.trusted)
+    fn trusted(&self, name: &PlanName, said: &Signed) -> Result<Statement, Failure> {
+        said.by(&self.trusted)
             .filter(|statement| statement.plan() == *name)
             .ok_or_else(|| Failure::error(PublishError::Untrusted { plan: name.to_string() }))
     }

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use super::bundle::Unpacked;
-use super::kept::Signed;
-use super::{Bundle, BundleError, KeptPlans, PublicKey, Statement};
+use super::{Bundle, BundleError, KeptPlans, PublicKey, Signed, Statement};
 use crate::history::PlanName;
 use crate::input_error::InputError;
 use crate::plan::Plan;
@@ -87,10 +86,7 @@ pub fn offered(
     trusted: &[PublicKey],
 ) -> Result<Offer, FetchError> {
     let name = || plan.to_string();
-    let Some((statement, signature)) = plant.publication(plan)? else {
-        return Err(FetchError::None { plan: name() });
-    };
-    let signed = Signed { statement, signature };
+    let signed = plant.publication(plan)?.ok_or_else(|| FetchError::None { plan: name() })?;
     let statement = signed.by(trusted).filter(|statement| statement.plan() == *plan);
     let statement = statement.ok_or_else(|| FetchError::Untrusted { plan: name() })?;
     // A statement whose signer is not trusted any more does not stand in the way.

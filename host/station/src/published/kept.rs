@@ -6,10 +6,9 @@ use std::path::{Path, PathBuf};
 
 use halfrow::files::written_aside::{AsideFolder, Misplaced, write_aside};
 use halfrow::result::sha256;
-use serde::{Deserialize, Serialize};
 
 use super::bundle::{PLAN, Unpacked, keep};
-use super::{BundleError, FetchError, PublicKey, Statement};
+use super::{BundleError, FetchError, PublicKey, Signed, Statement};
 use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::record::is_hash;
@@ -18,20 +17,6 @@ use crate::record::is_hash;
 #[derive(Clone, Debug)]
 pub struct KeptPlans {
     folder: PathBuf,
-}
-
-/// What an engineer has signed, as it is kept.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Signed {
-    pub(super) statement: String,
-    pub(super) signature: String,
-}
-
-impl Signed {
-    /// What it says, if one of `trusted` has signed it.
-    pub(super) fn by(&self, trusted: &[PublicKey]) -> Option<Statement> {
-        Statement::signed(&self.statement, &self.signature, trusted)
-    }
 }
 
 impl KeptPlans {

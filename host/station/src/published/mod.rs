@@ -18,7 +18,7 @@ pub use bundle::{Bundle, BundleError};
 pub(crate) use fetched::look_whole;
 pub use fetched::{FetchError, Fetched, Offer, offered};
 pub use kept::KeptPlans;
-pub use signed::{PublicKey, SigningError, SigningKey, Statement};
+pub use signed::{PublicKey, Signed, SigningError, SigningKey, Statement};
 
 use crate::history::PlanName;
 

@@ -111,7 +111,7 @@ impl PublicKey {
 
     /// Whether `signature` is its signature of `text`.
     #[must_use]
-    pub(crate) fn has_signed(&self, text: &str, signature: &str) -> bool {
+    fn has_signed(&self, text: &str, signature: &str) -> bool {
         let decoded = BASE64_STANDARD.decode(&self.0).ok().zip(BASE64_STANDARD.decode(signature).ok());
         decoded.is_some_and(|(key, signature)| {
             let signed = PURPOSE.to_owned() + text;
@@ -154,16 +154,6 @@ impl Statement {
     /// The version of the format.
     pub const SCHEMA: u32 = 1;
 
-    /// What `text` says, if `signature` is of one of `trusted`.
-    #[must_use]
-    pub fn signed(text: &str, signature: &str, trusted: &[PublicKey]) -> Option<Self> {
-        let statement: Self = serde_json::from_str(text).ok()?;
-        let is_trusted = trusted.contains(&statement.key)
-            && statement.schema == Self::SCHEMA
-            && statement.key.has_signed(text, signature);
-        is_trusted.then_some(statement)
-    }
-
     /// The text that is signed.
     #[must_use]
     pub fn text(&self) -> String {
@@ -175,5 +165,24 @@ impl Statement {
     #[must_use]
     pub fn plan(&self) -> PlanName {
         PlanName { product: self.product.clone(), plan: self.name.clone() }
+    }
+}
+
+/// The text of a statement with its signature, whoever made them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Signed {
+    pub(crate) statement: String,
+    pub(crate) signature: String,
+}
+
+impl Signed {
+    /// What it says, if one of `trusted` has signed it.
+    #[must_use]
+    pub fn by(&self, trusted: &[PublicKey]) -> Option<Statement> {
+        let statement: Statement = serde_json::from_str(&self.statement).ok()?;
+        let is_trusted = trusted.contains(&statement.key)
+            && statement.schema == Statement::SCHEMA
+            && statement.key.has_signed(&self.statement, &self.signature);
+        is_trusted.then_some(statement)
     }
 }

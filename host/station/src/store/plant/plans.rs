@@ -1,22 +1,20 @@
 //! Plans that the plant publishes, as engineers have signed them.
 
-use super::super::database::values;
+use super::super::database::{DatabaseError, Row, values};
 use super::super::{Deed, Snapshot, StoreError, statements as sql};
 use super::Plant;
 use crate::clock;
 use crate::history::PlanName;
-use crate::published::{Bundle, Statement};
+use crate::published::{Bundle, Signed, Statement};
 
 impl Plant {
-    /// The statement that holds for this plan, as text, and its signature. The caller decides whether to trust it.
+    /// The statement that holds for this plan. The caller decides whether to trust it.
     ///
     /// # Errors
     /// [`StoreError`] when the plant cannot be read.
-    pub fn publication(&mut self, plan: &PlanName) -> Result<Option<(String, String)>, StoreError> {
+    pub fn publication(&mut self, plan: &PlanName) -> Result<Option<Signed>, StoreError> {
         let PlanName { product, plan } = plan;
-        self.carry_out("to tell a plan", |from| {
-            from.first(sql::PUBLICATION, values![product, plan], |row| Ok((row.get(0)?, row.get(1)?)))
-        })
+        self.carry_out("to tell a plan", |from| from.first(sql::PUBLICATION, values![product, plan], signed))
     }
 
     /// Like [`Self::publication`], the last statement about this version.
@@ -27,11 +25,10 @@ impl Plant {
         &mut self,
         plan: &PlanName,
         version: &str,
-    ) -> Result<Option<(String, String)>, StoreError> {
+    ) -> Result<Option<Signed>, StoreError> {
         let PlanName { product, plan } = plan;
         self.carry_out("to tell a plan's versions", |from| {
-            let values = values![product, plan, version];
-            from.first(sql::PUBLISHED_VERSION, values, |row| Ok((row.get(0)?, row.get(1)?)))
+            from.first(sql::PUBLISHED_VERSION, values![product, plan, version], signed)
         })
     }
 
@@ -71,6 +68,10 @@ impl Plant {
             )
         })
     }
+}
+
+fn signed(row: &Row<'_>) -> Result<Signed, DatabaseError> {
+    Ok(Signed { statement: row.get(0)?, signature: row.get(1)? })
 }
 
 /// The statements that hold, ordered by product and name, and since when, in milliseconds since 1970, UTC. What this program
