@@ -1,10 +1,10 @@
 //! Evidence that is older than it has to be kept. Records and rows are kept for ever.
 
-use std::fs;
-
 use super::unnamed::beyond_rows;
-use crate::record::BlobError;
 use crate::store::{Snapshot, Store, StoreError};
+
+/// What the removal is called in the audit: by this `sql/pruned.sql` tells `check` what was removed.
+const ACT: &str = "prune";
 
 /// What was removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,12 +31,10 @@ pub fn prune(store: &mut Store, before_ms: i64, operator: &str) -> Result<Pruned
         let kept = beyond_rows(&blobs, &snapshot, unnamed)?;
         here.retain(|hash| !kept.contains(hash));
     }
-    store.note_removed(operator, "prune", &here, "older than it is kept")?;
+    store.note_removed(operator, ACT, &here, "older than it is kept")?;
     let mut pruned = Pruned::default();
     for hash in &here {
-        let path = blobs.path(hash);
-        let removed = fs::metadata(&path).and_then(|known| fs::remove_file(&path).map(|()| known.len()));
-        pruned.bytes += removed.map_err(|source| BlobError::Folder { path, source })?;
+        pruned.bytes += blobs.remove(hash)?;
         pruned.pieces += 1;
     }
     Ok(pruned)

@@ -41,10 +41,8 @@ pub fn prune_unnamed(store: &mut Store, operator: &str) -> Result<Unnamed, Store
     store.note_removed(operator, ACT, &subjects, "no row names it")?;
     let mut removed = Unnamed::default();
     for piece in &pieces {
-        let path = blobs.path(&piece.hash);
-        fs::remove_file(&path).map_err(|source| BlobError::Folder { path, source })?;
+        removed.bytes += blobs.remove(&piece.hash)?;
         removed.pieces += 1;
-        removed.bytes += piece.bytes;
     }
     for Spool { path, bytes, .. } in spools {
         fs::remove_dir_all(&path).map_err(|source| BlobError::Folder { path, source })?;

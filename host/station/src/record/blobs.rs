@@ -169,7 +169,7 @@ impl Blobs {
                 };
                 if known.is_file() {
                     let modified = known.modified().map_err(refused(&folder))?;
-                    pieces.push(Piece { hash, bytes: known.len(), modified });
+                    pieces.push(Piece { hash, modified });
                 }
             }
         }
@@ -185,6 +185,19 @@ impl Blobs {
         let bytes = read(&path).map_err(|source| BlobError::Read { path: path.clone(), source })?;
         let found = sha256([&bytes]);
         if found == hash { Ok(bytes) } else { Err(BlobError::Damaged { path, found }) }
+    }
+
+    /// Removes the evidence with this hash, and returns how many bytes it had.
+    ///
+    /// # Errors
+    /// [`BlobError::Folder`]
+    pub(crate) fn remove(&self, hash: &str) -> Result<u64, BlobError> {
+        let path = self.path(hash);
+        let removed = fs::metadata(&path).and_then(|known| fs::remove_file(&path).map(|()| known.len()));
+        removed.map_err(|source| {
+            let folder = path.parent().unwrap_or(&self.folder).to_owned();
+            BlobError::Folder { path: folder, source }
+        })
     }
 }
 
@@ -235,8 +248,6 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
 pub(crate) struct Piece {
     /// Its hash, taken from its name.
     pub hash: String,
-    /// How many bytes it has.
-    pub bytes: u64,
     /// When it was last written, or put again.
     pub modified: SystemTime,
 }
@@ -278,6 +289,16 @@ mod tests {
         assert!(matches!(blobs.get(&hash), Err(BlobError::Damaged { .. })));
         assert_eq!(blobs.put(b"abc").unwrap(), hash, "damage is not taken for evidence");
         assert_eq!(blobs.get(&hash).unwrap(), b"abc");
+    }
+
+    #[test]
+    fn evidence_that_cannot_be_removed_tells_of_the_folder_around_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let blobs = Blobs::new(folder.path().to_owned());
+        let hash = blobs.put(b"abc").unwrap();
+        assert_eq!(blobs.remove(&hash).unwrap(), 3);
+        let BlobError::Folder { path, .. } = blobs.remove(&hash).unwrap_err() else { panic!("it is gone") };
+        assert_eq!(path, folder.path().join("ba"));
     }
 
     #[test]

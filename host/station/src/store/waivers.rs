@@ -13,6 +13,9 @@ use crate::clock;
 use crate::ids;
 use crate::ids::NoRandomness;
 
+/// The audit's name for a waiver, on which `sql/waivers-unlike-audit.sql` and `sql/plant/contradicted-waivers.sql` rely.
+const WAIVE: &str = "waive";
+
 /// A waiver of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Waiver {
@@ -79,7 +82,7 @@ impl Store {
             if before.is_none() {
                 to.execute(sql::ADD_WAIVER, values![&id, run, at_ms, operator, reason])?;
                 outbox::enter(to, &sinks, Kind::Waiver, &id)?;
-                let deed = Deed { operator, act: "waive", subject: run, detail: reason };
+                let deed = Deed { operator, act: WAIVE, subject: run, detail: reason };
                 Line { id: &audit, at_ms, deed }.enter(to, &sinks)?;
             }
             Ok(before)
