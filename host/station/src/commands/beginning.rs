@@ -1,6 +1,7 @@
 //! How every command that keeps new results begins: the disk is checked, the store is opened, and what was left open
-//! is closed.
+//! is closed. And how it ends: nothing is being sent any more, and the log is in the database.
 
+use std::mem;
 use std::path::{self, Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -20,13 +21,13 @@ use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::{self, Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Folder, Store};
+use crate::store::{Folder, SharedStore, Store};
 
 /// How often signals are checked for.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// Which disks are taken for new results.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct Disk {
     /// Take any disk for the station's folder, memory and networks too, although it may lose results
     #[arg(long, env = "HALFROW_STATION_ANY_DISK")]
@@ -128,8 +129,8 @@ impl Signal {
 /// A station that is ready to work: signals are heeded, and no other program has its store.
 #[derive(Debug)]
 pub(super) struct Ready<'a> {
-    settings: &'a Settings,
-    store: Store,
+    pub(super) settings: &'a Settings,
+    pub(super) store: Store,
     pub(super) signal: Signal,
 }
 
@@ -158,11 +159,27 @@ impl<'a> Ready<'a> {
     }
 }
 
-/// Starts the threads that send on what the station keeps.
-pub(super) fn outbox(settings: &Settings, engine: &Engine) -> Result<Outbox, Failure> {
-    let store = engine.store();
-    let sinks = store.with(|store| sinks(settings, store))?;
-    Ok(Outbox::start(&store, sinks)?)
+/// What sends on what the station keeps. When it is dropped, it ends, and the log is folded into the database.
+#[derive(Debug)]
+pub(super) struct Sending {
+    store: SharedStore,
+    outbox: Outbox,
+}
+
+impl Sending {
+    /// Begins to send what is in `store` to all sinks of these settings.
+    pub(super) fn begin(settings: &Settings, store: SharedStore) -> Result<Self, Failure> {
+        let sinks = store.with(|store| sinks(settings, store))?;
+        let outbox = Outbox::start(&store, sinks)?;
+        Ok(Self { store, outbox })
+    }
+}
+
+impl Drop for Sending {
+    fn drop(&mut self) {
+        mem::take(&mut self.outbox).close();
+        self.store.with(Store::fold_log);
+    }
 }
 
 /// All sinks to which the station sends what it keeps.

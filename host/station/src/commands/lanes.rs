@@ -9,12 +9,11 @@ use clap::Args;
 use halfrow::words::plain;
 
 use super::Failure;
-use super::beginning::{Disk, Ready, SettingsFile, outbox};
+use super::beginning::{Disk, Ready, Sending, SettingsFile};
 use super::publish::fetch_at_start;
 use crate::console;
 use crate::engine::News;
 use crate::exit::Exit;
-use crate::store::Store;
 
 /// How often signals are checked for.
 const LOOK: Duration = Duration::from_millis(100);
@@ -42,7 +41,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let signal = ready.signal.clone();
     let engine = ready.start()?;
     let news = engine.listen();
-    let outbox = outbox(&settings, &engine)?;
+    let _sending = Sending::begin(&settings, engine.store())?;
     let printer = thread::Builder::new().name("news".to_owned()).spawn(move || print(&news));
     let printer = printer.map_err(Failure::error)?;
     let scans = scans().map_err(Failure::error)?;
@@ -58,8 +57,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
     };
     engine.close(by);
-    outbox.close();
-    engine.store().with(Store::fold_log);
     let _ = printer.join();
     Ok(by.map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }

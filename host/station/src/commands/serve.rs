@@ -8,7 +8,7 @@ use clap::Args;
 use halfrow::verdict::StoppedBy;
 
 use super::Failure;
-use super::beginning::{Disk, Ready, SettingsFile, Signal, outbox};
+use super::beginning::{Disk, Ready, Sending, SettingsFile, Signal};
 use super::lanes::EngineEnded;
 use super::notify::Notify;
 use super::publish::fetch_at_start;
@@ -16,7 +16,6 @@ use crate::console;
 use crate::engine::Engine;
 use crate::exit::Exit;
 use crate::settings::Settings;
-use crate::store::Store;
 use crate::web::{Access, App, Server, User, Who};
 
 /// How often systemd is told that the engine works.
@@ -60,25 +59,33 @@ pub(super) fn serve(
     served: Served<'_>,
     begin: impl FnOnce(&Arc<Engine>) -> io::Result<()>,
 ) -> Result<Exit, Failure> {
-    let Served { settings, disk, everybody, hints } = served;
     let notify = Notify::of_environment();
-    let ready = notify.while_opening(|| Ready::of(settings, disk))?;
+    let ready = notify.while_opening(|| Ready::of(served.settings, served.disk))?;
+    until_signal(ready, served, &notify, begin)
+}
+
+/// The same once the store is open.
+fn until_signal(
+    ready: Ready<'_>,
+    served: Served<'_>,
+    notify: &Notify,
+    begin: impl FnOnce(&Arc<Engine>) -> io::Result<()>,
+) -> Result<Exit, Failure> {
+    let Served { settings, everybody, hints, .. } = served;
     let signal = ready.signal.clone();
     let access = Access::of(settings, everybody).map_err(Failure::call)?;
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
     let at = listener.local_addr().map_err(Failure::error)?;
     let engine = Arc::new(ready.start()?);
-    let outbox = outbox(settings, &engine)?;
+    let _sending = Sending::begin(settings, engine.store())?;
     let app = App::new(settings.clone(), Arc::clone(&engine), access.at(at.port()), hints);
     let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
     begin(&engine).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
     notify.ready();
-    let by = at_work(&signal, &engine, &notify).map_err(Failure::error)?;
+    let by = at_work(&signal, &engine, notify).map_err(Failure::error)?;
     engine.close(Some(by));
-    outbox.close();
     server.close();
-    engine.store().with(Store::fold_log);
     Ok(halfrow::Cause::Stopped(by).into())
 }
 
@@ -104,22 +111,37 @@ mod tests {
     use std::thread;
 
     use super::*;
-    use crate::store::Folder;
+    use crate::store::{Folder, Store};
 
     /// Without systemd's watchdog, the program's end is all that can be noticed from outside.
     #[test]
-    fn a_station_whose_engine_has_ended_ends() {
+    fn a_station_whose_engine_has_ended_ends_with_its_log_in_the_database() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("station.toml");
         let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
-        fs::write(&path, format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{lane}")).unwrap();
+        let web = "[web]\nlisten = \"127.0.0.1:0\"\n";
+        fs::write(&path, format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{web}{lane}"))
+            .unwrap();
         fs::write(folder.path().join("plan.toml"), include_str!("../../tests/station/quick.toml")).unwrap();
         let settings = Settings::load(&path).unwrap();
-        let store = Store::open(&Folder::new(&settings.data)).unwrap();
-        let engine = Engine::start(settings, store, "lane".into()).unwrap();
-        engine.close(None);
         let (told, ended) = mpsc::channel();
-        thread::spawn(move || told.send(at_work(&Signal::default(), &engine, &Notify::default()).is_err()));
-        assert_eq!(ended.recv_timeout(Duration::from_secs(60)), Ok(true));
+        thread::spawn(move || {
+            let (disk, everybody) = (Disk::default(), User { name: String::new(), who: Who::Operator });
+            let store = Store::open(&Folder::new(&settings.data)).unwrap();
+            let ready = Ready { settings: &settings, store, signal: Signal::default() };
+            let served = Served { settings: &settings, disk: &disk, everybody, hints: Vec::new() };
+            // A store that others still have is not closed, which would fold its log, too.
+            let mut kept = None;
+            let begin = |engine: &Arc<Engine>| {
+                kept = Some(engine.store());
+                engine.close(None);
+                Ok(())
+            };
+            let failure = until_signal(ready, served, &Notify::default(), begin).unwrap_err();
+            let log = fs::metadata(settings.data.join("station.db-wal")).unwrap().len();
+            told.send((failure.error.is::<EngineEnded>(), log)).unwrap();
+            drop(kept);
+        });
+        assert_eq!(ended.recv_timeout(Duration::from_secs(60)), Ok((true, 0)));
     }
 }

@@ -9,7 +9,7 @@ use halfrow::verdict::StoppedBy;
 use rand::{RngExt as _, rng};
 use serde_json::json;
 
-use super::beginning::{Disk, SettingsFile, Signal, recovered, sinks};
+use super::beginning::{Disk, Sending, SettingsFile, Signal, recovered};
 use super::plant::plant;
 use super::publish::fetch_at_start;
 use super::{Failure, print};
@@ -17,11 +17,10 @@ use crate::console;
 use crate::exit::Exit;
 use crate::guard::guarded;
 use crate::lane::supervisor::OWN_PROGRAM;
-use crate::outbox::Outbox;
 use crate::plan::{Again, Plan};
 use crate::said::Said;
 use crate::settings::Settings;
-use crate::store::{Claim, PlantLink, SharedStore, Store, Worker};
+use crate::store::{Claim, PlantLink, SharedStore, Worker};
 use crate::work::{Aside, JobResult, Work, WorkError};
 
 /// Take jobs of the plant, and judge the boards that they are about
@@ -56,9 +55,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut store = arguments.disk.opens(&settings.data)?;
     recovered(&mut store)?;
     let introduction = settings.introduction(store.origin()?);
-    let sinks = sinks(&settings, &mut store)?;
     let store = SharedStore::new(store);
-    let outbox = Outbox::start(&store, sinks)?;
+    let _sending = Sending::begin(&settings, store.clone())?;
     let plant = PlantLink::new(address);
     let work = Work {
         settings: &settings,
@@ -70,13 +68,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     let stop = || signal.by();
     let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
-    let ended = match work.introduce(&introduction, !arguments.once, &stop) {
-        Ok(()) => take_jobs(&work, arguments, at_once, &stop),
-        Err(error) => Err(Failure::error(error)),
-    };
-    outbox.close();
-    work.store.with(Store::fold_log);
-    ended?;
+    work.introduce(&introduction, !arguments.once, &stop)?;
+    take_jobs(&work, arguments, at_once, &stop)?;
     Ok(signal.by().map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }
 
