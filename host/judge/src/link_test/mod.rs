@@ -43,15 +43,18 @@ pub enum LinkTestError {
     NoFrame(#[source] Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Tests the link to `board`. Each of the five parts takes `seconds`, by the link's clock or the wall's, whichever ends first;
-/// the last part streams no more than 1000 frames of 64 rows in that time. What is sent is drawn with `seed`. The board loses its
+/// How many parts a test has: round trips, echoes, to the board, to the host, both ways at once.
+pub const PARTS: u32 = 5;
+
+/// Tests the link to `board`. Each of its [`PARTS`] parts takes `seconds`, by the link's clock or the wall's, whichever
+/// ends first; the last part streams no more than 1000 frames of 64 rows in that time. What is sent is drawn with `seed`. The board loses its
 /// tables and configuration.
 ///
 /// # Errors
 /// [`LinkTestError`] when the board stops answering, or the link is too poor.
 pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, LinkTestError> {
     let random = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
-    let mut test = Test { board, seconds, random, wrong: 0 };
+    let mut test = Test { board, seconds, random, wrong: 0, begun: 0 };
     test.figures().map_err(|error| match error {
         LinkTestError::Board(source) if test.wrong > 0 => {
             LinkTestError::BrokeOff { wrong: test.wrong, source }
@@ -66,6 +69,8 @@ struct Test<'a> {
     random: Pcg64Mcg,
     /// Answers so far that held other bytes than were sent.
     wrong: u64,
+    /// Parts that have begun.
+    begun: u32,
 }
 
 /// When a part of the test began.
@@ -90,7 +95,14 @@ impl Test<'_> {
         let damaged_out = damaged_before + self.damaged_out()?;
         let errors = Errors::between(before, self.board.tally(), damaged_out, self.wrong);
         let limit = self.board.bytes_per_second();
+        debug_assert_eq!(self.begun, PARTS, "who waits for a test counts on it");
         Ok(Figures { link: self.board.link_name(), limit, errors, round_trips, to_board, to_host, together })
+    }
+
+    /// Begins one of the [`PARTS`].
+    fn begin_part(&mut self) -> Begun {
+        self.begun += 1;
+        self.begin()
     }
 
     fn begin(&self) -> Begun {
@@ -117,7 +129,7 @@ impl Test<'_> {
     }
 
     fn round_trips(&mut self) -> Result<RoundTrips, BoardError> {
-        let begun = self.begin();
+        let begun = self.begin_part();
         let mut times = Times::beginning(self.board.echo(&[])?.1);
         while !self.is_over(&begun) {
             times.add(self.board.echo(&[])?.1);
@@ -127,7 +139,7 @@ impl Test<'_> {
 
     /// Sends random bytes of random length there and back, and counts the echoes that differ.
     fn echoes(&mut self) -> Result<(), BoardError> {
-        let begun = self.begin();
+        let begun = self.begin_part();
         loop {
             let mut bytes = vec![0; self.random.next_u32() as usize % (MAX_PAYLOAD + 1)];
             self.random.fill_bytes(&mut bytes);
@@ -140,7 +152,7 @@ impl Test<'_> {
 
     /// Writes random row factors; no frame is streamed with them.
     fn outward(&mut self) -> Result<Throughput, BoardError> {
-        let begun = self.begin();
+        let begun = self.begin_part();
         while !self.is_over(&begun) {
             let entries = self.entries();
             self.board.write(Table::RowFactors, &entries)?;
@@ -152,7 +164,7 @@ impl Test<'_> {
     fn inward(&mut self) -> Result<Throughput, BoardError> {
         let entries = self.entries();
         self.board.write(Table::RowFactors, &entries)?;
-        let begun = self.begin();
+        let begun = self.begin_part();
         let port = TablePort { table: Table::RowFactors, port: 0 };
         while !self.is_over(&begun) {
             let read = self.board.read_entries(Bank::Shadow, port, entries.len() / ROW_FACTOR_BYTES)?;

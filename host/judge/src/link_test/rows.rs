@@ -24,7 +24,7 @@ impl Test<'_> {
         // The first frame also fills the pipe, so its time shows how many frames there is time for.
         let first = self.stream(&frame, &mut number, 1)?;
         let frames = self.seconds.as_secs_f64() / first.as_secs_f64().max(1e-6);
-        let begun = self.begin();
+        let begun = self.begin_part();
         self.stream(&frame, &mut number, frames.clamp(1.0, MOST_FRAMES) as u16)?;
         Ok(self.throughput(&begun))
     }

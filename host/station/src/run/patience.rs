@@ -2,11 +2,10 @@
 
 use std::time::Duration;
 
+use halfrow::link_test;
+
 use crate::lane::supervisor::Patience;
 use crate::plan::{Selected, Step, StepKind};
-
-/// Round trips, echoes, to the board, to the host, both ways at once: each part takes the seconds that the plan gives.
-const LINK_TEST_PARTS: u32 = 5;
 
 /// The patience with a lane that carries out `selected` and may be silent for `silence` in addition to its link tests.
 pub(super) fn of(silence: Duration, selected: &Selected) -> Patience {
@@ -14,10 +13,10 @@ pub(super) fn of(silence: Duration, selected: &Selected) -> Patience {
     Patience { silence: silence.saturating_add(longest_link_test(selected)), whole: whole(selected), tries }
 }
 
-/// How long the longest link test is silent when all is well.
+/// How long the longest link test is silent when all is well: each of its parts takes the time that the plan gives.
 fn longest_link_test(selected: &Selected) -> Duration {
     let parts = |step: &Step| match step.kind {
-        StepKind::Link { each } => each.saturating_mul(LINK_TEST_PARTS),
+        StepKind::Link { each } => each.saturating_mul(link_test::PARTS),
         StepKind::Identity | StepKind::Verify(_) => Duration::ZERO,
     };
     selected.steps.iter().map(parts).max().unwrap_or_default()
@@ -47,7 +46,7 @@ mod tests {
         let patience = |steps| of(Duration::from_secs(5), &Selected { steps, limits: Vec::new() });
         let tested =
             patience(vec![step(1, 0, StepKind::Identity), step(20, 2, link(3)), step(30, 0, link(2))]);
-        assert_eq!(tested.silence, Duration::from_secs(5 + 5 * 3));
+        assert_eq!(tested.silence, Duration::from_secs(5 + u64::from(link_test::PARTS) * 3));
         assert_eq!(tested.whole, Duration::from_secs(1 + 3 * 20 + 30 + 30));
         assert_eq!(tested.tries, 1 + 3 + 1);
         assert_eq!(patience(vec![step(1, 0, StepKind::Identity)]).silence, Duration::from_secs(5));
