@@ -59,8 +59,7 @@ fn ended_ms(started_ms: i64, took: Option<Duration>) -> i64 {
 
 /// The outcome by the limits of the run as a whole; those of a step are in the step's outcome.
 fn worst(measured: &[Measured]) -> &'static str {
-    let faults: Vec<_> = measured.iter().filter_map(Measured::fault).collect();
-    match faults.iter().find(|cause| **cause != RunCause::Board).or(faults.first()) {
+    match Measured::worst(measured).map(|(_, cause)| cause) {
         None => "PASS",
         Some(RunCause::Board) => "FAIL",
         Some(_) => "ERROR",

@@ -82,22 +82,20 @@ impl Try {
     /// Adds these measurements: a PASS that misses a limit becomes what the limit says, and a FAIL that misses one
     /// which blames the station becomes ERROR.
     fn measured(mut self, measurements: Vec<Measured>) -> Self {
-        let faults: Vec<_> = measurements.iter().filter_map(|one| Some((one.fault()?, one.said()))).collect();
+        self.is_incriminating |= measurements.iter().any(|one| one.fault() == Some(RunCause::Board));
+        let worst = Measured::worst(&measurements).map(|(one, cause)| (one.said(), cause));
         self.measurements = measurements;
-        self.is_incriminating |= faults.iter().any(|(cause, _)| *cause == RunCause::Board);
-        // A fault that is not the board's is worse: the board was not judged correctly then.
-        let worst = faults.iter().find(|(cause, _)| *cause != RunCause::Board).or(faults.first());
-        let is_worse = |cause: &RunCause| match self.outcome {
+        let is_worse = |cause: RunCause| match self.outcome {
             StepOutcome::Passed => true,
-            StepOutcome::Failed => *cause != RunCause::Board,
+            StepOutcome::Failed => cause != RunCause::Board,
             StepOutcome::Error | StepOutcome::Skipped => false,
         };
-        let Some((cause, said)) = worst.filter(|(cause, _)| is_worse(cause)) else { return self };
-        self.outcome = if *cause == RunCause::Board { StepOutcome::Failed } else { StepOutcome::Error };
+        let Some((said, cause)) = worst.filter(|(_, cause)| is_worse(*cause)) else { return self };
+        self.outcome = if cause == RunCause::Board { StepOutcome::Failed } else { StepOutcome::Error };
         self.exit = cause.exit();
         // What a step says to do about its own finding is no advice about another.
-        let remedy = said.remedy().filter(|_| *cause != RunCause::Board).map(str::to_owned);
-        (self.cause, self.finding, self.remedy) = (*cause, said.clone(), remedy);
+        let remedy = said.remedy().filter(|_| cause != RunCause::Board).map(str::to_owned);
+        (self.cause, self.finding, self.remedy) = (cause, said, remedy);
         self
     }
 }

@@ -5,7 +5,8 @@ use halfrow::verdict::{Cause, StoppedBy};
 use serde::{Deserialize, Serialize};
 
 use super::IDENTITY_NOT_CHECKED;
-use super::step::{DeviceSeen, Measured, RunCause, StepOutcome, StepRecord};
+use super::measured::Measured;
+use super::step::{DeviceSeen, RunCause, StepOutcome, StepRecord};
 use crate::exit::Exit;
 use crate::said::{Said, Saying};
 

@@ -2,6 +2,7 @@
 
 mod blobs;
 mod conclude;
+mod measured;
 mod not_exercised;
 mod step;
 mod unnamed;
@@ -16,11 +17,9 @@ pub use blobs::{BlobError, Blobs};
 pub(crate) use blobs::{Piece, is_hash, made_within, synced};
 pub use conclude::Conclusion;
 pub(crate) use conclude::TEST_AGAIN;
+pub use measured::{Measured, MeasuredOutcome, judged};
 pub(crate) use not_exercised::in_one_line;
-pub use step::{
-    BoardSeen, DeviceSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord,
-    judged,
-};
+pub use step::{BoardSeen, DeviceSeen, RunCause, StepOutcome, StepRecord, SuspectRecord};
 pub(crate) use unnamed::UnnamedRecord;
 
 /// What a PASS says if it could not be checked whether the board has the scanned serial number.
