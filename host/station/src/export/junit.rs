@@ -8,7 +8,9 @@ use halfrow::words::plain;
 use jiff::Timestamp;
 use quick_junit::{NonSuccessKind, Property, SerializeError, TestCase, TestCaseStatus as Status, TestSuite};
 
-use crate::record::{Measured, MeasuredOutcome, Record, RunCause, StepOutcome, StepRecord, in_one_line};
+use crate::record::{
+    Measured, MeasuredOutcome, Record, RunCause, StepOutcome, StepRecord, in_one_line, last_tries,
+};
 
 pub(super) fn render(record: &Record) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(plain(&format!("{} {}", record.plan.name, record.plan.version)));
@@ -19,12 +21,8 @@ pub(super) fn render(record: &Record) -> Result<String, SerializeError> {
         suite.add_property(Property::new(name, plain(&value)));
     }
     suite.add_test_case(verdict(record));
-    let is_last = |step: &&StepRecord| {
-        !record.steps.iter().any(|other| other.seq == step.seq && other.attempt > step.attempt)
-    };
-    let last: Vec<_> = record.steps.iter().filter(is_last).collect();
-    suite.add_test_cases(last.iter().map(|step| step_case(step, record.took_for(step))));
-    for step in last {
+    suite.add_test_cases(last_tries(&record.steps).map(|step| step_case(step, record.took_for(step))));
+    for step in last_tries(&record.steps) {
         suite.add_test_cases(limits(&step.name, &step.measurements));
     }
     suite.add_test_cases(limits("run", &record.measurements));

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::IDENTITY_NOT_CHECKED;
 use super::measured::Measured;
-use super::step::{DeviceSeen, RunCause, StepOutcome, StepRecord};
+use super::step::{DeviceSeen, RunCause, StepOutcome, StepRecord, last_tries};
 use crate::exit::Exit;
 use crate::said::{Said, Saying};
 
@@ -43,11 +43,7 @@ impl Conclusion {
     /// missing, if the lane did not reach the end of the plan by itself.
     #[must_use]
     pub fn of(planned: u32, steps: &[StepRecord], run: &[Measured], lane: Option<Self>) -> Self {
-        let is_last = |step: &StepRecord| {
-            !steps.iter().any(|other| other.seq == step.seq && other.attempt > step.attempt)
-        };
-        let ended = steps.iter().filter(|step| is_last(step));
-        let by_step = ended.filter_map(Self::by_step);
+        let by_step = last_tries(steps).filter_map(Self::by_step);
         let by_run = run.iter().filter_map(Self::by_measurement);
         let missing = || {
             let passed = steps.iter().filter(|step| step.outcome == StepOutcome::Passed).count();

@@ -19,6 +19,7 @@ pub use conclude::Conclusion;
 pub(crate) use conclude::TEST_AGAIN;
 pub use measured::{Measured, MeasuredOutcome, judged};
 pub(crate) use not_exercised::in_one_line;
+pub(crate) use step::last_tries;
 pub use step::{BoardSeen, DeviceSeen, RunCause, StepOutcome, StepRecord, SuspectRecord};
 pub(crate) use unnamed::UnnamedRecord;
 
@@ -185,8 +186,8 @@ impl Record {
         }
         if self.conclusion.verdict == Verdict::Pass {
             let passed = |seq: &u32| {
-                let mut tries = self.steps.iter().rev().filter(|step| step.seq == *seq);
-                tries.next().is_some_and(|step| step.outcome == StepOutcome::Passed)
+                let last = last_tries(&self.steps).filter(|step| step.seq == *seq).last();
+                last.is_some_and(|step| step.outcome == StepOutcome::Passed)
             };
             if let Some(seq) = (1..=steps.max(1)).find(|seq| !passed(seq)) {
                 return Err(RecordError::Incomplete { seq, steps });
@@ -307,6 +308,15 @@ pub(crate) mod tests {
         error.conclusion = Conclusion::error(RunCause::Crash, crate::said::Saying::LaneEndless);
         let bytes = error.bytes(1).unwrap();
         assert_eq!(Record::parse(&bytes).unwrap(), error);
+    }
+
+    #[test]
+    fn the_last_try_of_a_step_is_the_one_with_the_highest_number() {
+        let stored = |steps| Record { steps, ..pass() }.bytes(1);
+        let passed = |attempt| step(1, attempt, StepOutcome::Passed, RunCause::None);
+        let error = |attempt| step(1, attempt, StepOutcome::Error, RunCause::Link);
+        assert!(stored(vec![passed(2), error(1)]).is_ok());
+        assert!(matches!(stored(vec![error(2), passed(1)]), Err(RecordError::Incomplete { .. })));
     }
 
     /// JSON has no such number: it would become `null`, which says that nothing was measured.

@@ -83,6 +83,12 @@ impl StepRecord {
     }
 }
 
+/// The last try of each step, which is the one that counts.
+pub(crate) fn last_tries(steps: &[StepRecord]) -> impl Iterator<Item = &StepRecord> {
+    let is_later = |step: &StepRecord, than: &StepRecord| step.seq == than.seq && step.attempt > than.attempt;
+    steps.iter().filter(move |step| !steps.iter().any(|other| is_later(other, step)))
+}
+
 /// The outcome of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
