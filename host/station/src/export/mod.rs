@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use quick_junit::SerializeError;
 use serde::Deserialize;
 
-pub use table::{COLUMNS, Table};
+pub use table::Table;
 
 use crate::record::Record;
 use crate::store::{Snapshot, StoreError};

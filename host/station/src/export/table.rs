@@ -4,47 +4,58 @@ use std::borrow::Cow;
 use std::io::Write;
 
 use super::ExportError;
-use crate::record::{Measured, Record, StepRecord};
+use crate::record::{BoardSeen, Measured, Record, StepRecord};
 
-/// The columns: those of the run, of the step and of the measurement. A value that does not exist is empty.
-pub const COLUMNS: [&str; 37] = [
-    "run",
-    "product",
-    "serial",
-    "variant",
-    "plan",
-    "version",
-    "plan_sha256",
-    "station",
-    "lane",
-    "operator",
-    "target",
-    "board_kind",
-    "device",
-    "build",
-    "started_ms",
-    "ended_ms",
-    "seconds",
-    "verdict",
-    "cause",
-    "exit_code",
-    "headline",
-    "production",
-    "marginal",
-    "seq",
-    "attempt",
-    "step",
-    "step_outcome",
-    "step_started_ms",
-    "step_ended_ms",
-    "detail",
-    "measurement",
-    "value",
-    "unit",
-    "low",
-    "high",
-    "blames",
-    "outcome",
+/// A column of `T`: its name, and its cell. A value that does not exist is empty.
+type Column<T> = (&'static str, fn(&T) -> String);
+
+/// The columns of the run, which come first.
+const OF_RUN: [Column<Record>; 23] = [
+    ("run", |of| of.run.id.clone()),
+    ("product", |of| of.run.product.clone()),
+    ("serial", |of| of.run.serial.clone()),
+    ("variant", |of| of.run.variant.clone()),
+    ("plan", |of| of.plan.name.clone()),
+    ("version", |of| of.plan.version.clone()),
+    ("plan_sha256", |of| of.plan.sha256.clone()),
+    ("station", |of| of.run.station.clone()),
+    ("lane", |of| of.run.lane.clone()),
+    ("operator", |of| of.run.operator.clone()),
+    ("target", |of| of.run.target.clone()),
+    ("board_kind", |of| of_board(of, |board| Some(&board.kind))),
+    ("device", |of| of_board(of, |board| board.device.as_ref())),
+    ("build", |of| of_board(of, |board| Some(&board.build))),
+    ("started_ms", |of| of.run.started_ms.to_string()),
+    ("ended_ms", |of| of.ended_ms.to_string()),
+    ("seconds", |of| number(of.seconds)),
+    ("verdict", |of| of.conclusion.verdict.to_string()),
+    ("cause", |of| of.conclusion.cause.name().to_owned()),
+    ("exit_code", |of| of.conclusion.exit_code.to_string()),
+    ("headline", |of| of.conclusion.headline.clone()),
+    ("production", |of| of.production.to_string()),
+    ("marginal", |of| of.marginal.to_string()),
+];
+
+/// Those of the step, which follow.
+const OF_STEP: [Column<StepRecord>; 7] = [
+    ("seq", |of| of.seq.to_string()),
+    ("attempt", |of| of.attempt.to_string()),
+    ("step", |of| of.name.clone()),
+    ("step_outcome", |of| of.outcome.name().to_owned()),
+    ("step_started_ms", |of| of.started_ms.to_string()),
+    ("step_ended_ms", |of| of.ended_ms.to_string()),
+    ("detail", |of| of.detail.clone()),
+];
+
+/// Those of the measurement, which come last.
+const OF_MEASUREMENT: [Column<Measured>; 7] = [
+    ("measurement", |of| of.name.clone()),
+    ("value", |of| number(of.value)),
+    ("unit", |of| of.unit.clone()),
+    ("low", |of| number(of.low)),
+    ("high", |of| number(of.high)),
+    ("blames", |of| of.blames.name().to_owned()),
+    ("outcome", |of| of.outcome.name().to_owned()),
 ];
 
 /// A table that is being written.
@@ -58,7 +69,8 @@ impl<W: Write> Table<W> {
     /// [`ExportError::Write`]
     pub fn begin(to: W) -> Result<Self, ExportError> {
         let mut table = Self(to);
-        table.line(COLUMNS)?;
+        let (run, step, measured) = (OF_RUN.map(name), OF_STEP.map(name), OF_MEASUREMENT.map(name));
+        table.line(run.into_iter().chain(step).chain(measured))?;
         Ok(table)
     }
 
@@ -72,10 +84,9 @@ impl<W: Write> Table<W> {
     /// # Errors
     /// [`ExportError::Write`]
     pub fn add(&mut self, record: &Record) -> Result<(), ExportError> {
-        let run = run(record);
+        let run = OF_RUN.map(|(_, cell)| cell(record));
         for step in &record.steps {
-            let step_columns = step_columns(step);
-            self.lines(&run, &step_columns, &step.measurements)?;
+            self.lines(&run, &OF_STEP.map(|(_, cell)| cell(step)), &step.measurements)?;
         }
         // Those of the run as a whole have the step 0, as in the store.
         let whole = ["0", "1", "run", "", "", "", ""].map(str::to_owned);
@@ -91,21 +102,24 @@ impl<W: Write> Table<W> {
     }
 
     fn lines(&mut self, run: &[String], step: &[String], measured: &[Measured]) -> Result<(), ExportError> {
-        let none = [const { String::new() }; 7];
         let mut line = |measurement: &[String]| {
             let cells = run.iter().chain(step).chain(measurement);
             self.line(cells.map(String::as_str))
         };
         if measured.is_empty() {
-            return line(&none);
+            return line(&OF_MEASUREMENT.map(|_| String::new()));
         }
-        measured.iter().try_for_each(|one| line(&measurement(one)))
+        measured.iter().try_for_each(|one| line(&OF_MEASUREMENT.map(|(_, cell)| cell(one))))
     }
 
     fn line<'a>(&mut self, cells: impl IntoIterator<Item = &'a str>) -> Result<(), ExportError> {
         let cells: Vec<_> = cells.into_iter().map(cell).collect();
         write!(self.0, "{}\r\n", cells.join(",")).map_err(ExportError::Write)
     }
+}
+
+const fn name<T>((name, _): Column<T>) -> &'static str {
+    name
 }
 
 /// A cell, in quotes where it needs them.
@@ -116,60 +130,8 @@ fn cell(text: &str) -> Cow<'_, str> {
     Cow::Borrowed(text)
 }
 
-fn run(record: &Record) -> [String; 23] {
-    let Record { run, plan, conclusion: ended, .. } = record;
-    let board = |part: fn(&crate::record::BoardSeen) -> Option<&String>| {
-        record.board.as_ref().and_then(part).cloned().unwrap_or_default()
-    };
-    [
-        run.id.clone(),
-        run.product.clone(),
-        run.serial.clone(),
-        run.variant.clone(),
-        plan.name.clone(),
-        plan.version.clone(),
-        plan.sha256.clone(),
-        run.station.clone(),
-        run.lane.clone(),
-        run.operator.clone(),
-        run.target.clone(),
-        board(|board| Some(&board.kind)),
-        board(|board| board.device.as_ref()),
-        board(|board| Some(&board.build)),
-        run.started_ms.to_string(),
-        record.ended_ms.to_string(),
-        number(record.seconds),
-        ended.verdict.to_string(),
-        ended.cause.name().to_owned(),
-        ended.exit_code.to_string(),
-        ended.headline.clone(),
-        record.production.to_string(),
-        record.marginal.to_string(),
-    ]
-}
-
-fn step_columns(step: &StepRecord) -> [String; 7] {
-    [
-        step.seq.to_string(),
-        step.attempt.to_string(),
-        step.name.clone(),
-        step.outcome.name().to_owned(),
-        step.started_ms.to_string(),
-        step.ended_ms.to_string(),
-        step.detail.clone(),
-    ]
-}
-
-fn measurement(one: &Measured) -> [String; 7] {
-    [
-        one.name.clone(),
-        number(one.value),
-        one.unit.clone(),
-        number(one.low),
-        number(one.high),
-        one.blames.name().to_owned(),
-        one.outcome.name().to_owned(),
-    ]
+fn of_board(record: &Record, part: fn(&BoardSeen) -> Option<&String>) -> String {
+    record.board.as_ref().and_then(part).cloned().unwrap_or_default()
 }
 
 /// The shortest digits that read back as this number.
