@@ -1,6 +1,6 @@
 //! `halfrow-station pareto`
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use halfrow::words::count;
 
 use super::Failure;
@@ -15,7 +15,7 @@ pub(super) struct Arguments {
     results: Results,
     /// Count by this
     #[arg(long, value_enum, default_value = "part")]
-    by: Each,
+    by: Of,
     #[command(flatten)]
     counted: Counted,
     /// Print JSON
@@ -23,21 +23,8 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What failures are counted by.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Each {
-    /// The part that is suspected first
-    Part,
-    /// The limit or the step that failed; a run counts with each
-    Check,
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let by = match arguments.by {
-        Each::Part => Of::Part,
-        Each::Check => Of::Check,
-    };
-    let pareto = pareto(&arguments.results.snapshot()?, &arguments.counted.wanted()?, by)?;
+    let pareto = pareto(&arguments.results.snapshot()?, &arguments.counted.wanted()?, arguments.by)?;
     either(&pareto, arguments.json, text)
 }
 

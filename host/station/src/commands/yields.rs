@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::fmt::Write as _;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use halfrow::words::count;
 
 use super::Failure;
@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     results: Results,
     /// A line for each
     #[arg(long, value_enum, default_value = "plan")]
-    by: Each,
+    by: By,
     #[command(flatten)]
     counted: Counted,
     /// Print JSON
@@ -32,36 +32,9 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What a line is for, beside product and plan.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Each {
-    /// Plan
-    Plan,
-    /// Day, UTC
-    Day,
-    /// Week, UTC, from Monday on
-    Week,
-    /// Lane
-    Lane,
-    /// Station
-    Station,
-}
-
-impl From<Each> for By {
-    fn from(each: Each) -> Self {
-        match each {
-            Each::Plan => Self::Plan,
-            Each::Day => Self::Day,
-            Each::Week => Self::Week,
-            Each::Lane => Self::Lane,
-            Each::Station => Self::Station,
-        }
-    }
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let snapshot = arguments.results.snapshot()?;
-    let yields = yields(&snapshot, &arguments.counted.wanted()?, arguments.by.into())?;
+    let yields = yields(&snapshot, &arguments.counted.wanted()?, arguments.by)?;
     either(&yields, arguments.json, text)
 }
 

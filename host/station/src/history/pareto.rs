@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use clap::ValueEnum;
 use serde::Serialize;
 
 use super::plans_named;
@@ -9,12 +10,14 @@ use super::rate::Rate;
 use super::yields::Wanted;
 use crate::store::{Snapshot, StoreError, Value, statements};
 
-/// What failures are counted by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What failures are counted by. A run has one part or none, and may have several checks: limits that blame the board, and
+/// steps that failed by more than their limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Of {
-    /// The part that is suspected first. A run has one or none.
+    /// The part that is suspected first
+    #[default]
     Part,
-    /// What failed: a limit that blames the board, or a step by more than its limits. A run may have several.
+    /// The limit or the step that failed; a run counts with each
     Check,
 }
 

@@ -12,6 +12,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use clap::ValueEnum;
 use halfrow::Verdict;
 use jiff::civil::Date;
 use jiff::{SignedDuration, Timestamp, tz};
@@ -22,18 +23,19 @@ use super::rate::Rate;
 use super::{DAY_MS, Period, PlanName, count, plans};
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements, values};
 
-/// What the lines of a yield are about, in addition to product and plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What the lines of a yield are about, beside product and plan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum By {
-    /// Nothing else.
+    /// Plan
+    #[default]
     Plan,
-    /// The day, UTC.
+    /// Day, UTC
     Day,
-    /// The week, UTC, from Monday on.
+    /// Week, UTC, from Monday on
     Week,
-    /// Station and lane.
+    /// Lane
     Lane,
-    /// The station.
+    /// Station
     Station,
 }
 

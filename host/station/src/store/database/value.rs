@@ -60,11 +60,7 @@ impl From<f64> for Value<'_> {
 
 impl From<Verdict> for Value<'_> {
     fn from(verdict: Verdict) -> Self {
-        Self::Text(match verdict {
-            Verdict::Pass => "PASS",
-            Verdict::Fail => "FAIL",
-            Verdict::Error => "ERROR",
-        })
+        Self::Text(verdict.name())
     }
 }
 
@@ -145,7 +141,7 @@ impl FromValue for Verdict {
     const EXPECTED: &'static str = "PASS, FAIL or ERROR";
 
     fn from_value(value: Value<'_>) -> Option<Self> {
-        [Self::Pass, Self::Fail, Self::Error].into_iter().find(|verdict| value == Value::from(*verdict))
+        Self::ALL.into_iter().find(|verdict| value == Value::from(*verdict))
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use axum::extract::State;
 use axum::response::Response;
+use halfrow::Verdict;
 use maud::{Markup, html};
 
 use super::run_filter::{RunFilter, unit_address};
@@ -67,7 +68,7 @@ fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<Pla
             label { span { (visit.say("history.verdict")) }
                 select name="verdict" {
                     option value="" { (visit.say("history.any")) }
-                    @for word in ["PASS", "FAIL", "ERROR"] {
+                    @for word in Verdict::ALL.map(Verdict::name) {
                         option value=(word) selected[asked.verdict.eq_ignore_ascii_case(word)] { (word) }
                     }
                 }

@@ -22,8 +22,7 @@ pub(super) async fn page(
     visit: Visit,
     Fields(asked): Fields<RunFilter>,
 ) -> Result<Response, Trouble> {
-    let choices = [("part", Of::Part), ("check", Of::Check)];
-    let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
+    let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by()?)));
     let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| Ok((pareto::pareto(now, &wanted, by)?, history::plan_names(now)?));
     let (found, plans) = app.look(&visit, look).await?;
@@ -31,7 +30,7 @@ pub(super) async fn page(
     let counts = counts.each_ref().map(|(name, count)| (*name, count.as_str()));
     let content = html! {
         h1 { (visit.say("pareto.title")) }
-        (form(&visit, &asked, &list::lanes(&app), &plans))
+        (form(&visit, (&asked, by), &list::lanes(&app), &plans))
         @if found.failed == 0 {
             p.nothing { (visit.say("pareto.none")) }
         } @else {
@@ -46,11 +45,19 @@ pub(super) async fn page(
     Ok(page.answer(&visit))
 }
 
-fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
-    let choices = [("part", visit.say("pareto.part")), ("check", visit.say("pareto.check"))];
+fn form(
+    visit: &Visit,
+    (asked, by): (&RunFilter, Of),
+    lanes: &[String],
+    plans: &BTreeSet<PlanName>,
+) -> Markup {
+    let word = |visit: &Visit, by: Of| match by {
+        Of::Part => visit.say("pareto.part"),
+        Of::Check => visit.say("pareto.check"),
+    };
     html! {
         form.filters method="get" action="/pareto" {
-            (yields::by(visit, asked, &choices))
+            (yields::choice(visit, by, word))
             (list::common(visit, asked, lanes, plans))
             span.acts { button { (visit.say("history.show")) } " " a href="/pareto" { (visit.say("history.all")) } }
         }

@@ -1,5 +1,6 @@
 //! What a query asks for, and the query that asks for it.
 
+use clap::ValueEnum;
 use form_urlencoded::Serializer;
 use halfrow::Verdict;
 use serde::Deserialize;
@@ -52,13 +53,11 @@ impl RunFilter {
     /// # Errors
     /// [`Wrong`] when a value is not valid.
     pub(super) fn filter(&self) -> Result<Filter, Wrong> {
-        let verdict = match self.verdict.to_ascii_uppercase().as_str() {
-            "" => None,
-            "PASS" => Some(Verdict::Pass),
-            "FAIL" => Some(Verdict::Fail),
-            "ERROR" => Some(Verdict::Error),
-            _ => return Err(Wrong(self.verdict.clone())),
-        };
+        let is_asked = |verdict: &Verdict| self.verdict.eq_ignore_ascii_case(verdict.name());
+        let verdict = Verdict::ALL.into_iter().find(is_asked);
+        if verdict.is_none() && !self.verdict.is_empty() {
+            return Err(Wrong(self.verdict.clone()));
+        }
         Ok(Filter {
             // What was scanned is taken as it is: a blank at its end is part of it.
             serial: Some(self.serial.clone()).filter(|serial| !serial.is_empty()),
@@ -92,14 +91,15 @@ impl RunFilter {
         some(&self.after).map(|after| after.parse().map_err(|_| Wrong(after.clone()))).transpose()
     }
 
-    /// The one of `choices` that `by` names; the first when `by` is empty.
+    /// What `by` names; the default when it is empty.
     ///
     /// # Errors
     /// Like [`Self::filter`].
-    pub(super) fn by<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, Wrong> {
-        let named = |name: &str| self.by == name || self.by.is_empty();
-        let found = choices.iter().find(|(name, _)| named(name));
-        found.map(|(_, choice)| *choice).ok_or_else(|| Wrong(self.by.clone()))
+    pub(super) fn by<T: ValueEnum + Default>(&self) -> Result<T, Wrong> {
+        if self.by.is_empty() {
+            return Ok(T::default());
+        }
+        T::from_str(&self.by, false).map_err(|_| Wrong(self.by.clone()))
     }
 
     fn period(&self) -> Result<Period, Wrong> {

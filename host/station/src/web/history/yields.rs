@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use axum::extract::State;
 use axum::response::Response;
+use clap::ValueEnum;
 use maud::{Markup, html};
 
 use super::bars::Day;
@@ -34,14 +35,7 @@ pub(super) async fn page(
     visit: Visit,
     Fields(asked): Fields<RunFilter>,
 ) -> Result<Response, Trouble> {
-    let choices = [
-        ("plan", By::Plan),
-        ("day", By::Day),
-        ("week", By::Week),
-        ("lane", By::Lane),
-        ("station", By::Station),
-    ];
-    let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
+    let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by()?)));
     let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| Ok((yields::yields(now, &wanted, by)?, history::plan_names(now)?));
     let (Yields { mut lines, mut flips }, plans) = app.look(&visit, look).await?;
@@ -54,7 +48,7 @@ pub(super) async fn page(
     let content = html! {
         h1 { (visit.say("yield.title")) }
         p.soft { (visit.say("yield.about")) }
-        (form(&visit, &asked, &list::lanes(&app), &plans))
+        (form(&visit, (&asked, by), &list::lanes(&app), &plans))
         @if lines.is_empty() {
             p.nothing { (visit.say("history.none")) }
         } @else {
@@ -68,17 +62,15 @@ pub(super) async fn page(
     Ok(page.answer(&visit))
 }
 
-fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
-    let choices = [
-        ("plan", visit.say("history.plan")),
-        ("day", visit.say("yield.day")),
-        ("week", visit.say("yield.week")),
-        ("lane", visit.say("history.lane")),
-        ("station", visit.say("nav.station")),
-    ];
+fn form(
+    visit: &Visit,
+    (asked, by): (&RunFilter, By),
+    lanes: &[String],
+    plans: &BTreeSet<PlanName>,
+) -> Markup {
     html! {
         form.filters method="get" action="/yield" {
-            (by(visit, asked, &choices))
+            (choice(visit, by, word))
             (list::common(visit, asked, lanes, plans))
             span.acts { button { (visit.say("history.show")) } " " a href="/yield" { (visit.say("history.all")) } }
         }
@@ -86,13 +78,28 @@ fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<Pla
 }
 
 /// The choice of what there is a line for.
-pub(super) fn by(visit: &Visit, asked: &RunFilter, choices: &[(&str, &str)]) -> Markup {
+pub(super) fn choice<T: Copy + ValueEnum + PartialEq>(
+    visit: &Visit,
+    by: T,
+    word: fn(&Visit, T) -> &'static str,
+) -> Markup {
+    let all = T::value_variants().iter().filter_map(|one| Some((*one, one.to_possible_value()?)));
     html! {
         label { span { (visit.say("history.by")) }
             select name="by" {
-                @for (value, name) in choices { option value=(value) selected[asked.by == *value] { (name) } }
+                @for (one, value) in all { option value=(value.get_name()) selected[one == by] { (word(visit, one)) } }
             }
         }
+    }
+}
+
+fn word(visit: &Visit, by: By) -> &'static str {
+    match by {
+        By::Plan => visit.say("history.plan"),
+        By::Day => visit.say("yield.day"),
+        By::Week => visit.say("yield.week"),
+        By::Lane => visit.say("history.lane"),
+        By::Station => visit.say("nav.station"),
     }
 }
 
@@ -159,15 +166,9 @@ fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
 }
 
 fn table(visit: &Visit, by: By, lines: &[Yield]) -> Markup {
-    let plan = visit.say("history.plan");
-    let of = |first: &str| [first, plan].join(visit.say("told.list"));
-    let of = match by {
-        By::Plan => plan.to_owned(),
-        By::Day => of(visit.say("yield.day")),
-        By::Week => of(visit.say("yield.week")),
-        By::Lane => of(visit.say("history.lane")),
-        By::Station => of(visit.say("nav.station")),
-    };
+    let mut of = vec![word(visit, by)];
+    of.extend((by != By::Plan).then(|| word(visit, By::Plan)));
+    let of = of.join(visit.say("told.list"));
     html! {
         div.wide tabindex="0" { table.yields {
             thead { tr {
