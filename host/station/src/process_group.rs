@@ -2,6 +2,7 @@
 //! whatever it has started is killed with it.
 
 use std::ffi::OsStr;
+use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, ExitStatus};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -18,10 +19,11 @@ const LONGEST: Duration = Duration::from_millis(10);
 /// How long a killed process is waited for.
 const KILLED: Duration = Duration::from_secs(10);
 
-/// A command for `program`, which need not know how the station reaches its plant.
-pub(crate) fn without_secrets(program: impl AsRef<OsStr>) -> Command {
+/// A command that starts `program` as such a process: it need not know how the station reaches its plant, [`kill`] can
+/// kill its group, and Ctrl-C at the station does not reach it.
+pub(crate) fn command(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
-    command.env_remove(PASSWORD_OF_PLANT);
+    command.env_remove(PASSWORD_OF_PLANT).process_group(0);
     command
 }
 

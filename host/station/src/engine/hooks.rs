@@ -2,14 +2,13 @@
 //! do changes no verdict.
 
 use std::io::{self, Read};
-use std::os::unix::process::CommandExt as _;
 use std::process::Stdio;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::floor::Shown;
-use crate::process_group::{kill, killed, waited, without_secrets};
+use crate::process_group::{command, kill, killed, waited};
 use crate::settings::{Hook, WORDS};
 
 /// The most that is kept of what a hook writes to stderr, in bytes.
@@ -59,9 +58,8 @@ fn of(said: &str) -> String {
 /// [`HookError`] when it did not end well.
 pub(super) fn run(hook: &Hook, lane: &str, shown: Option<&Shown>) -> Result<(), HookError> {
     let program = || hook.program.display().to_string();
-    let mut child = without_secrets(&hook.program)
+    let mut child = command(&hook.program)
         .args(hook.arguments.iter().map(|argument| filled(argument, lane, shown)))
-        .process_group(0)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())

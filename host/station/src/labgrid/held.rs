@@ -1,7 +1,6 @@
 //! A place that is held by a process, which gives it back when its stdin ends.
 
 use std::io::{BufRead as _, BufReader, Read};
-use std::os::unix::process::CommandExt as _;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::PoisonError;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -164,8 +163,7 @@ struct Holder {
 impl Holder {
     /// Starts it. What it writes can be received until the receiver is dropped.
     fn start(mut call: Command) -> std::io::Result<(Self, Receiver<Line>)> {
-        // In a group of its own, so that Ctrl-C ends the run first.
-        call.process_group(0).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        call.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = call.spawn()?;
         let (sender, lines) = mpsc::channel();
         let heard = [
@@ -214,6 +212,7 @@ mod tests {
     use nix::unistd::{Pid, getpgid};
 
     use super::*;
+    use crate::labgrid::Labgrid;
 
     /// An IPv6 address before a port is in brackets (RFC 3986, section 3.2.2).
     #[test]
@@ -231,7 +230,9 @@ mod tests {
     /// Ctrl-C goes to the whole group of the station, and the run is to end before its board is given back.
     #[test]
     fn what_has_the_place_is_in_a_group_of_its_own() {
-        let (mut holder, _) = Holder::start(Command::new("cat")).unwrap();
+        let labgrid = Labgrid { program: "cat".into(), coordinator: None, deadline: Duration::from_secs(60) };
+        let place = Place::new("cam-1".to_owned(), "4", "1", labgrid);
+        let (mut holder, _) = Holder::start(place.call("hold")).unwrap();
         let process = Pid::from_raw(holder.child.id().cast_signed());
         assert_eq!(getpgid(Some(process)), Ok(process));
         drop(holder.stdin.take());

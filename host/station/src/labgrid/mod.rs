@@ -24,7 +24,7 @@ pub use error::LabgridError;
 pub use held::AcquiredPlace;
 
 use crate::presence::{self, PORTS, USB};
-use crate::process_group::without_secrets;
+use crate::process_group::command;
 use crate::said::Said;
 
 /// The kind of such a board in the settings.
@@ -112,7 +112,7 @@ impl Place {
 
     /// A command that runs the program that reaches labgrid.
     fn call(&self, act: &str) -> Command {
-        let mut call = without_secrets(&self.labgrid.program);
+        let mut call = command(&self.labgrid.program);
         call.args([act, "--place", &self.name, "--user", &self.user]);
         if let Some(coordinator) = &self.labgrid.coordinator {
             call.args(["--coordinator", coordinator]);

@@ -14,7 +14,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::message::MOST_LINE;
 use super::{Control, FILE_MIB, Job, Message, Ruling};
-use crate::process_group::{kill, killed, waited, without_secrets};
+use crate::process_group::{command, kill, killed, waited};
 use crate::record::{BoardSeen, StepRecord, made_within};
 use crate::said::{Said, Saying};
 
@@ -131,11 +131,10 @@ impl Lane {
         let events = File::create(spool.join(EVENTS))?;
         // There are many lanes, and the board is what they wait for.
         let threads = std::env::var_os(THREADS).unwrap_or_else(|| "1".into());
-        let mut child = without_secrets(program)
+        let mut child = command(program)
             .arg0(std::env::args_os().next().unwrap_or_else(|| program.into()))
             .arg("lane")
             .env(THREADS, threads)
-            .process_group(0)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(File::create(spool.join(LOG))?)
