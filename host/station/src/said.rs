@@ -65,6 +65,13 @@ const MIXED_UP: &str =
     "Scan the label of the board that is in the lane; after a repair, an engineer binds it again.";
 
 impl Said {
+    /// What the judge's report says with a code and parameters, in the words of `message`.
+    pub(crate) fn reported(of: &Value, message: &str) -> Option<Self> {
+        let code = of.get("code")?.as_str()?.to_owned();
+        let parameters = of.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
+        Some(Self { code, parameters, message: message.to_owned(), causes: Vec::new() })
+    }
+
     /// What to do about it, where the sentence does not end in that.
     pub(crate) fn remedy(&self) -> Option<&'static str> {
         REMEDIES.into_iter().find(|(code, _)| *code == self.code).map(|(_, remedy)| remedy)

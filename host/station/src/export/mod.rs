@@ -38,6 +38,23 @@ impl Format {
         Self::from_str(name, false).ok()
     }
 
+    /// The name by which [`Self::named`] finds it.
+    #[must_use]
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+
+    /// What people call it.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Record => "JSON",
+            Self::Junit => "JUnit",
+            Self::Csv => "CSV",
+            Self::OpenHtf => "OpenHTF",
+        }
+    }
+
     /// What the names of its files end with, after the run's id.
     #[must_use]
     pub const fn ending(self) -> &'static str {

@@ -24,9 +24,7 @@ fn of_step(step: &StepRecord) -> Vec<Said> {
 
 /// A part in the words of the judge, with its code.
 fn part(of: &Value) -> Option<Said> {
-    let text = |key: &str| of.get(key).and_then(Value::as_str).map(str::to_owned);
-    let parameters = of.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
-    Some(Said { code: text("code")?, parameters, message: text("words")?, causes: Vec::new() })
+    Said::reported(of, of.get("words")?.as_str()?)
 }
 
 /// The parts of a step in one line, with the step's name.

@@ -5,16 +5,19 @@ use std::time::Duration;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::Response;
+use clap::ValueEnum as _;
 use halfrow::Verdict;
 use maud::{Markup, html};
+use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::acts::RefusedAct;
 use super::run_filter::unit_address;
 use super::{acts, pictures, show};
+use crate::export::Format;
 use crate::history::unit::{self as history, UnitRun};
 use crate::plan::limits::Blame;
-use crate::record::{Attachment, DeviceSeen, Measured, Record, StepRecord};
+use crate::record::{Attachment, DeviceSeen, Measured, MeasuredOutcome, Record, StepOutcome, StepRecord};
 use crate::said::Said;
 use crate::store::{Snapshot, Waiver};
 use crate::web::layout::{Here, Page};
@@ -167,18 +170,11 @@ fn defects(record: &Record) -> Vec<Said> {
         let all = step.evidence.as_ref()?.get("suspects")?.as_array()?;
         let defect = |suspect: &Value| {
             let part = suspect.get("part").and_then(Value::as_str).unwrap_or_default();
-            coded(suspect.get("defect")?, part)
+            Said::reported(suspect.get("defect")?, part)
         };
         Some(all.iter().filter_map(defect).collect::<Vec<_>>()).filter(|all| !all.is_empty())
     };
     record.steps.iter().rev().find_map(of_step).unwrap_or_default()
-}
-
-/// A finding of the judge's report with its sentence.
-fn coded(finding: &Value, message: &str) -> Option<Said> {
-    let code = finding.get("code")?.as_str()?.to_owned();
-    let parameters = finding.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
-    Some(Said { code, parameters, message: message.to_owned(), causes: Vec::new() })
 }
 
 fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
@@ -248,7 +244,7 @@ fn step_row(visit: &Visit, step: &StepRecord, took: Option<Duration>) -> Markup 
                 (show::said(&step.name))
                 @if step.attempt > 1 { " " (visit.words.fill("run.attempt", &[("number", &step.attempt.to_string())])) }
             }
-            td { (outcome(visit, step.outcome.name())) }
+            td { (outcome(visit, step.outcome)) }
             td.number { @if let Some(took) = took { (show::number(visit, took.as_secs_f64())) " s" } }
             td {
                 (show::told(&told))
@@ -259,12 +255,12 @@ fn step_row(visit: &Visit, step: &StepRecord, took: Option<Duration>) -> Markup 
 }
 
 /// The outcome of a step, a check or a measurement: a word with a shape.
-fn outcome(visit: &Visit, name: &str) -> Markup {
-    let (class, shape, word) = match name {
-        "passed" => ("came passed", "✔", visit.say("run.passed")),
-        "failed" => ("came failed", "✖", visit.say("run.failed")),
-        "error" | "unset" => ("came error", "⚠", visit.say("run.error")),
-        _ => ("came", "–", visit.say("run.skipped")),
+fn outcome(visit: &Visit, came: StepOutcome) -> Markup {
+    let (class, shape, word) = match came {
+        StepOutcome::Passed => ("came passed", "✔", visit.say("run.passed")),
+        StepOutcome::Failed => ("came failed", "✖", visit.say("run.failed")),
+        StepOutcome::Error => ("came error", "⚠", visit.say("run.error")),
+        StepOutcome::Skipped => ("came", "–", visit.say("run.skipped")),
     };
     html! { span class=(class) { span aria-hidden="true" { (shape) } " " (word) } }
 }
@@ -282,9 +278,15 @@ fn checks(visit: &Visit, record: &Record) -> Markup {
             h2 { (show::said(&visit.words.fill("run.checks", &[("step", &step.name)]))) }
             div.wide tabindex="0" { table.checks { tbody { @for check in checks { tr {
                 th scope="row" { (show::said(&text(check, "name"))) }
-                td { (outcome(visit, &text(check, "outcome"))) }
                 td {
-                    @match check.get("finding").and_then(|finding| coded(finding, &text(check, "detail"))) {
+                    // The report calls outcomes as the record does.
+                    @match check.get("outcome").and_then(|came| StepOutcome::deserialize(came).ok()) {
+                        Some(came) => (outcome(visit, came)),
+                        None => (show::said(&text(check, "outcome"))),
+                    }
+                }
+                td {
+                    @match check.get("finding").and_then(|finding| Said::reported(finding, &text(check, "detail"))) {
                         Some(finding) => (show::told(&visit.words.tell(&finding))),
                         None => (show::english(visit, &text(check, "detail"))),
                     }
@@ -317,6 +319,12 @@ fn measurements(visit: &Visit, record: &Record) -> Markup {
 fn measured(visit: &Visit, step: &str, one: &Measured) -> Markup {
     let side =
         |sign: &str, bound: Option<f64>| bound.map(|bound| format!("{sign} {}", show::number(visit, bound)));
+    let came = match one.outcome {
+        MeasuredOutcome::Passed => StepOutcome::Passed,
+        MeasuredOutcome::Failed => StepOutcome::Failed,
+        MeasuredOutcome::Unset => StepOutcome::Error,
+        MeasuredOutcome::NotJudged => StepOutcome::Skipped,
+    };
     let limits = [side("≥", one.low), side("≤", one.high)].into_iter().flatten().collect::<Vec<_>>();
     html! {
         tr {
@@ -325,7 +333,7 @@ fn measured(visit: &Visit, step: &str, one: &Measured) -> Markup {
                 @if let Some(value) = one.value { (show::number(visit, value)) " " (show::said(visit.words.unit(&one.unit))) } @else { "–" }
             }
             td { (limits.join(visit.say("told.list"))) @if !limits.is_empty() { " " span.soft { (blamed(visit, one.blames)) } } }
-            td { @if limits.is_empty() { span.soft { "–" } } @else { (outcome(visit, one.outcome.name())) } }
+            td { @if limits.is_empty() { span.soft { "–" } } @else { (outcome(visit, came)) } }
             td.soft { (show::said(step)) }
         }
     }
@@ -352,8 +360,8 @@ fn files(visit: &Visit, run: &UnitRun, kept: &[(Attachment, bool)]) -> Markup {
         @if run.line.record_sha256.is_some() {
             h2 { (visit.say("run.exports")) }
             p.exports {
-                @for (format, name) in [("record", "JSON"), ("junit", "JUnit"), ("csv", "CSV"), ("openhtf", "OpenHTF")] {
-                    a href=(format!("{address}/export/{format}")) download { (name) } " "
+                @for format in Format::value_variants() {
+                    a href=(format!("{address}/export/{}", format.name())) download { (format.title()) } " "
                 }
             }
         }
