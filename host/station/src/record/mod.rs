@@ -256,8 +256,12 @@ fn between(from_ms: i64, to_ms: i64) -> Option<Duration> {
 #[cfg(test)]
 pub(crate) mod tests {
     pub(crate) use super::conclude::tests::{step, steps};
+    use serde::de::DeserializeOwned;
+    use serde_json::json;
+
     use super::*;
-    use crate::plan::limits::Maker;
+    use crate::plan::check_digit::CheckDigit;
+    use crate::plan::limits::{Blame, Maker};
 
     pub(crate) fn pass() -> Record {
         let run = RunHead {
@@ -317,6 +321,24 @@ pub(crate) mod tests {
         let error = |attempt| step(1, attempt, StepOutcome::Error, RunCause::Link);
         assert!(stored(vec![passed(2), error(1)]).is_ok());
         assert!(matches!(stored(vec![error(2), passed(1)]), Err(RecordError::Incomplete { .. })));
+    }
+
+    /// Pages and tables call a value by its name, and records hold what serde makes of it.
+    #[test]
+    fn a_value_is_called_what_it_is_stored_as() {
+        fn named<T: DeserializeOwned>(name: fn(T) -> &'static str) {
+            let unknown = serde_json::from_str::<T>(r#""?""#).err().unwrap().to_string();
+            // It goes on with all that there are: unknown variant `?`, expected one of `passed`, `failed`, …
+            let all: Vec<_> = unknown.split('`').skip(3).step_by(2).collect();
+            assert!(!all.is_empty(), "{unknown}");
+            all.iter().for_each(|one| assert_eq!(name(serde_json::from_value(json!(one)).unwrap()), *one));
+        }
+        named(StepOutcome::name);
+        named(RunCause::name);
+        named(MeasuredOutcome::name);
+        named(Blame::name);
+        named(CheckDigit::name);
+        named(Verdict::name);
     }
 
     /// JSON has no such number: it would become `null`, which says that nothing was measured.
