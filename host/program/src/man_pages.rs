@@ -1,19 +1,61 @@
 //! A program's man pages and completion scripts, made from its command line.
 
-use std::io;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
-use clap::Command;
+use clap::{Args, Command};
 use clap_mangen::Man;
+use halfrow::call::{Files, FilesError};
+use halfrow::files::written_aside::write_aside;
+
+use crate::exit::Exit;
+use crate::files::prepare_files;
 
 pub use clap_complete::Shell;
 
+/// The folder that man pages are written into.
+#[derive(Debug, Args)]
+pub struct ManualFolder {
+    /// The folder, made if it is not there
+    folder: PathBuf,
+    /// Replace pages that are there
+    #[arg(long)]
+    overwrite: bool,
+}
+
+impl ManualFolder {
+    /// Writes the pages of all commands of `program`; none if something is in the way of one. No page is written over `input`,
+    /// which the call reads.
+    ///
+    /// # Errors
+    /// The exit code, which is that of a wrong call if nothing was written, and the reason.
+    pub fn write(&self, program: Command, input: Option<&Path>) -> Result<(), (Exit, anyhow::Error)> {
+        let Self { folder, overwrite } = self;
+        let pages = all(program).map_err(|error| (Exit::Error, error.into()))?;
+        let places: Vec<_> = pages.iter().map(|page| folder.join(&page.name)).collect();
+        let files = Files::new(*overwrite).reads(input).writes_into(FOLDER, &places);
+        prepare_files(&files).map_err(|error| (Exit::Usage, error.into()))?;
+        let written = || {
+            let (path, option) = (folder.clone(), FOLDER);
+            fs::create_dir_all(folder).map_err(|source| FilesError::FolderClosed { path, option, source })?;
+            for (page, place) in pages.iter().zip(&places) {
+                write_aside(place, *overwrite, |out| out.write_all(page.text.as_bytes()))?;
+            }
+            Ok::<_, FilesError>(())
+        };
+        written().map_err(|error| (Exit::Error, error.into()))
+    }
+}
+
+/// The argument that names the folder.
+const FOLDER: &str = "FOLDER";
+
 /// A man page of section 1.
-#[derive(Debug)]
-pub struct Page {
+struct Page {
     /// Its file name.
-    pub name: String,
+    name: String,
     /// Its content, for troff.
-    pub text: String,
+    text: String,
 }
 
 /// The script with which `shell` completes calls of `program`, without a newline at its end.
@@ -29,7 +71,7 @@ pub fn completions(shell: Shell, program: &mut Command) -> String {
 ///
 /// # Errors
 /// Those of the renderer, which writes only to memory.
-pub fn all(program: Command) -> io::Result<Vec<Page>> {
+fn all(program: Command) -> io::Result<Vec<Page>> {
     let mut program = program.disable_help_subcommand(true);
     program.build();
     let mut pages = Vec::new();

@@ -172,7 +172,7 @@ commands! {
     /// Write the manual pages into a folder
     ///
     /// Then: man -l FOLDER/halfrow.1
-    Manual(super::completions::Manual), "manual";
+    Manual(halfrow_program::man_pages::ManualFolder), "manual";
 }
 
 #[cfg(test)]

@@ -1,11 +1,7 @@
 //! `halfrow-station completions` and `manual`
 
-use std::fs;
-use std::path::PathBuf;
-
-use anyhow::Context as _;
 use clap::{Args, CommandFactory as _};
-use halfrow::files::written_aside::write_aside;
+use halfrow::call::FilesError;
 use halfrow_program::man_pages::{self, Shell};
 
 use super::{Cli, Failure, print};
@@ -23,11 +19,8 @@ pub(super) struct Completions {
 /// Then: man -l FOLDER/halfrow-station.1
 #[derive(Debug, Args)]
 pub(super) struct Manual {
-    /// The folder, made if it is not there
-    folder: PathBuf,
-    /// Replace pages that are there
-    #[arg(long)]
-    overwrite: bool,
+    #[command(flatten)]
+    to: man_pages::ManualFolder,
 }
 
 pub(super) fn complete(arguments: &Completions) -> Result<Exit, Failure> {
@@ -35,14 +28,11 @@ pub(super) fn complete(arguments: &Completions) -> Result<Exit, Failure> {
 }
 
 pub(super) fn write(arguments: &Manual) -> Result<Exit, Failure> {
-    let Manual { folder, overwrite } = arguments;
-    let pages = man_pages::all(Cli::command()).map_err(Failure::error)?;
-    let made = fs::create_dir_all(folder);
-    made.with_context(|| format!("{} cannot be made; name a folder that can be", folder.display()))
-        .map_err(Failure::error)?;
-    for page in pages {
-        write_aside(&folder.join(&page.name), *overwrite, |out| out.write_all(page.text.as_bytes()))
-            .map_err(Failure::error)?;
-    }
+    arguments.to.write(Cli::command(), None).map_err(|(exit, error)| {
+        // The library names no flag.
+        let exists = matches!(error.downcast_ref(), Some(FilesError::Exists { .. }));
+        let flag = "a page is there already, and is replaced with --overwrite alone";
+        Failure { exit, error: if exists { error.context(flag) } else { error } }
+    })?;
     Ok(Exit::Pass)
 }

@@ -32,9 +32,24 @@ fn every_command_has_a_page_which_is_not_written_over_unless_asked() {
     for command in names.iter().filter(|name| **name != "help") {
         text(folder.path(), &format!("halfrow-station-{command}.1"));
     }
-    let again = did(&["manual", to]);
-    assert!(again.code == Some(3) && again.complained.contains("exists"), "{again:?}");
+    assert_eq!(did(&["manual", to]).code, Some(2));
     assert_eq!(did(&["manual", to, "--overwrite"]).code, Some(0));
+}
+
+/// As by `halfrow manual`.
+#[test]
+fn no_page_is_written_if_one_is_in_the_way() {
+    let folder = folder();
+    let last = folder.path().join("halfrow-station.1");
+    fs::write(&last, "precious").unwrap();
+    let refused = did(&["manual", folder.path().to_str().unwrap()]);
+    let told = ["--overwrite", "file-in-folder-exists"].map(|word| refused.complained.contains(word));
+    assert!(refused.code == Some(2) && told == [true; 2], "{refused:?}");
+    let names = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+    assert_eq!(names.collect::<Vec<_>>(), ["halfrow-station.1"]);
+    assert_eq!(text(folder.path(), "halfrow-station.1"), "precious");
+    let below = did(&["manual", last.join("man").to_str().unwrap()]);
+    assert!(below.code == Some(2) && below.complained.contains("file-not-written"), "{below:?}");
 }
 
 #[test]
