@@ -43,7 +43,7 @@ impl Trouble {
             (None, Some(why)) => Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, why),
             (None, None) => Self::new(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")),
             (Some(_), _) if visit.may(Who::Operator) => {
-                Self::new(visit, StatusCode::FORBIDDEN, visit.for_engineers("trouble.engineer"))
+                Self::new(visit, StatusCode::FORBIDDEN, visit.for_engineers(visit.say("trouble.engineer")))
             }
             (Some(_), _) => Self::new(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")),
         }

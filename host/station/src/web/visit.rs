@@ -54,9 +54,9 @@ impl Visit {
         self.words.say(key)
     }
 
-    /// The words of `key`, which ask for an engineer, or those for a station where nobody can be one.
-    pub(super) fn for_engineers(&self, key: &'static str) -> &'static str {
-        self.say(if self.can_log_in { key } else { "trouble.unlisted" })
+    /// `words` that ask for an engineer, or those for a station where nobody can be one.
+    pub(super) fn for_engineers(&self, words: &'static str) -> &'static str {
+        if self.can_log_in { words } else { self.say("trouble.unlisted") }
     }
 
     /// The visitor's name, for records and the audit.

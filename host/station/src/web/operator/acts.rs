@@ -147,7 +147,8 @@ async fn understood(
             Err(error) => refused(error),
         },
         Ok(Scan::Act(Act::Out | Act::In)) if !visit.may(Who::Engineer) => {
-            Ok(scanned.answer(None, Err(visit.for_engineers("scan.engineer").to_owned()), scanned.armed()))
+            let said = visit.for_engineers(visit.say("scan.engineer")).to_owned();
+            Ok(scanned.answer(None, Err(said), scanned.armed()))
         }
         _ if armed.is_some() && app.settings().lanes.len() > 1 && scanned.is_over() => {
             let over = ScanError::choice_over(&scanned.lane);
