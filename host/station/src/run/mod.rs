@@ -282,7 +282,8 @@ fn record(
     took: Duration,
 ) -> Record {
     let LaneReport { mut steps, took: stepped, end } = heard;
-    let ended_ms = clock::now_ms();
+    // The clock may have been set back meanwhile.
+    let ended_ms = clock::now_ms().max(run.started_ms);
     let seconds = took.as_secs_f64();
     let stepped = [("run.seconds", stepped.map(|took| took.as_secs_f64()))];
     // Without any step there was nothing to measure, and how the lane ended says more.

@@ -1,7 +1,7 @@
 //! What a run does while it does not use its store, and with what it has started.
 
 use std::fs;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -12,6 +12,7 @@ use halfrow_station::store::{SharedStore, Store};
 use super::bench::{Did, PLAN, Station, program};
 use super::killed_lane::run_in;
 use super::unsaved::calls;
+use crate::clocks::Clocks;
 use crate::common::{held_up, script};
 use crate::history::made::{End, Made, Run};
 use crate::lanes::floor::HANG;
@@ -49,6 +50,20 @@ fn the_evidence_of_one_run_keeps_no_other_from_the_store() {
     assert_eq!(saved.record.conclusion.verdict, Verdict::Error);
     drop(store);
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+#[test]
+fn a_run_ends_no_earlier_than_it_began_though_the_clock_is_set_back() {
+    let station = Station::with(PLAN);
+    station.run("CAT00017", "mock");
+    let clocks = Clocks::in_folder(&station.path(""));
+    let mut program = Command::new(program());
+    program.args(station.run_arguments("CAT00001", "mock")).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let run = clocks.of(&mut program).spawn().unwrap();
+    spool(&station);
+    clocks.ahead(-3600, 0);
+    let (_, record, _) = station.saved(&Did::from(run.wait_with_output().unwrap()));
+    assert!(record.ended_ms >= record.run.started_ms, "{record:?}");
 }
 
 /// The spool of the station's run, once it exists.
