@@ -238,32 +238,31 @@ fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Cop
     };
     let mut named = copy.named_evidence()?;
     named.append(&mut beyond_rows(&from.blobs(), &copy, Vec::new())?);
-    let evidence = copy_named(&named, &from.blobs(), &to.blobs(), ends)?;
+    copy_named(&named, &from.blobs(), &to.blobs(), ends)?;
     let (unknown, left_out) = copy_unnamed(&copy, (&pieces, &named), [&from.blobs(), &to.blobs()], ends)?;
     synced(aside).map_err(StoreError::from)?;
+    let evidence = to.blobs().all().map_err(StoreError::from)?.len();
     Ok(Copied { runs: copy.final_runs()?.len(), evidence, unknown, left_out })
 }
 
-/// Copies the evidence in `named`, and returns how many pieces. What is left out may have been removed by its age: a check of the
+/// Copies the evidence in `named`. What is left out may have been removed by its age: a check of the
 /// copy says whether it should be there, and all the rest may be needed one day.
 fn copy_named(
     named: &BTreeSet<String>,
     from: &Blobs,
     to: &Blobs,
     ends: fn(&BlobError) -> bool,
-) -> Result<usize, StoreError> {
-    let mut evidence = 0;
+) -> Result<(), StoreError> {
     for hash in named {
         match from.get(hash) {
             Err(error) if ends(&error) => return Err(error.into()),
             Err(_) => {}
             Ok(bytes) => {
                 to.put(&bytes)?;
-                evidence += 1;
             }
         }
     }
-    Ok(evidence)
+    Ok(())
 }
 
 /// Copies the records among `pieces` that no row names, and what they name; returns how many of them are of runs without a row,

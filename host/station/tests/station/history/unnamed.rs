@@ -168,7 +168,7 @@ fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {
     fs::copy(Made::new().closed().path().join("station.db"), folder.path().join("station.db")).unwrap();
     let place = tempfile::tempdir().unwrap();
     let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
-    let copied = Copied { runs: 0, evidence: 0, unknown: 1, left_out: Vec::new() };
+    let copied = Copied { runs: 0, evidence: 2, unknown: 1, left_out: Vec::new() };
     assert_eq!(backup(&Folder::new(folder.path()), &copy).unwrap(), copied);
     assert_eq!(restore(&Folder::new(&copy), &again).unwrap(), copied);
     for place in [folder.path(), &copy, &again] {
@@ -204,7 +204,7 @@ fn a_copy_lacks_what_no_row_names_and_is_damaged_and_says_so() {
         let told = format!("fault: {} holds other bytes", damaged.display());
         assert!(said.lines().any(|line| line.starts_with(&told)), "{said}");
     }
-    let rest = "0 runs and 0 pieces of evidence are in ";
+    let rest = "0 runs and 1 piece of evidence are in ";
     assert!(said.contains(rest) && said.contains("; with them 1 record of runs that no row names"), "{said}");
     assert!(said.ends_with("; without 2 pieces that no row names\n"), "{said}");
     assert_eq!(restore(&Folder::new(&copy), &again).unwrap().unknown, 1);
