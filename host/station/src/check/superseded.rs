@@ -4,15 +4,17 @@ use std::collections::BTreeSet;
 
 use halfrow::Verdict;
 
-use crate::record::{Blobs, UnnamedRecord};
+use crate::record::{Blobs, Record, UnnamedRecord};
+use crate::said::{Said, Saying};
 use crate::store::{Snapshot, StoreError};
 
-/// A record's verdict is not the one that the database has for its run. This is not a fault: either the power failed before
-/// the run was committed, or the database is a copy that was made before it was. On the disk both look the same.
+/// A record's verdict is not the one that the database has for its run. This is not a fault: either the power failed, or the
+/// station was killed, before the run was committed, or the database is a copy that was made before it was. On the disk both look
+/// the same.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "run {run} is {row} here, and its record {sha256} says {verdict}: the power failed before that was shown, or \
-     station.db is an earlier copy, and then it was shown; find out which, or else test the board again"
+    "run {run} is {row} here, and its record {sha256} says {verdict}: the power failed, or the station was \
+     killed, before that was shown, or station.db is an earlier copy, and then it was shown; find out which, or else test the board again"
 )]
 pub struct Superseded {
     /// The run.
@@ -26,7 +28,7 @@ pub struct Superseded {
 }
 
 /// Of the records that no row names, those that are whole and contradict the row of their run. An open run counts as
-/// ERROR, which it will become.
+/// ERROR, which it will become. A run whose result was saved too late was never shown as anything else.
 pub(super) fn superseded(
     blobs: &Blobs,
     unnamed: &[UnnamedRecord],
@@ -41,6 +43,7 @@ pub(super) fn superseded(
         let row = match snapshot.verdict_of(run)? {
             None if open.contains(run) => None,
             None => continue,
+            Some(stored) if was_saved_too_late(blobs, &stored.record_sha256) => continue,
             Some(stored) => Some(stored.verdict),
         };
         let Some(verdict) = verdict.filter(|said| *said != row.unwrap_or(Verdict::Error)) else { continue };
@@ -56,4 +59,10 @@ pub(super) fn superseded(
     }
     found.sort_by(|one, other| one.run.cmp(&other.run));
     Ok(found)
+}
+
+fn was_saved_too_late(blobs: &Blobs, record: &str) -> bool {
+    let record = blobs.get(record).ok().and_then(|bytes| Record::parse(&bytes).ok());
+    let finding = record.and_then(|record| record.conclusion.finding);
+    finding.is_some_and(|finding| finding.code == Said::from(Saying::SavedTooLate { tries: 0 }).code)
 }

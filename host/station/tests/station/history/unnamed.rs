@@ -1,7 +1,7 @@
 //! What no row of the database names is removed after a day, and nothing else.
 
 use std::fs::{self, File};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, SystemTime};
@@ -9,8 +9,9 @@ use std::time::{Duration, SystemTime};
 use halfrow_station::check::{Fault, check};
 use halfrow_station::kept::{Copied, Pruned, Unnamed, backup, prune, prune_unnamed, restore};
 use halfrow_station::record::RunCause;
-use halfrow_station::run::recover;
-use halfrow_station::store::Folder;
+use halfrow_station::run::{recover, recover_run};
+use halfrow_station::store::{Folder, SharedStore};
+use serde_json::json;
 
 use super::commands::did;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, id};
@@ -224,17 +225,35 @@ fn a_record_that_came_to_no_row_is_no_fault() {
     assert_eq!(backup(&made.folder(), &place.path().join("copy")).unwrap().unknown, 0);
 }
 
+/// Stores a record of `run` that says PASS and that no row names; returns its file.
+fn left_pass(folder: &Folder, run: &str) -> PathBuf {
+    let conclusion = json!({ "verdict": "PASS" });
+    let left = json!({ "schema": 1, "run": { "id": run }, "conclusion": conclusion, "attachments": [] });
+    folder.blobs().path(&folder.blobs().put(left.to_string().as_bytes()).unwrap())
+}
+
+/// It is known then what was shown: the ERROR.
+#[test]
+fn a_record_whose_run_was_saved_too_late_contradicts_nothing() {
+    let mut made = Made::new();
+    let run = made.run(&Run::of("S1", End::Open));
+    let folder = made.folder();
+    left_pass(&folder, &run);
+    let told = || check(&folder).unwrap().superseded.len();
+    assert_eq!(told(), 1, "the control");
+    let (_folder, store) = made.parts();
+    recover_run(&SharedStore::new(store), &run).unwrap();
+    assert_eq!(told(), 0);
+}
+
 #[test]
 fn a_record_that_is_damaged_says_nothing_of_its_run() {
     let mut made = Made::new();
     let run = made.run(&Run::of("S1", End::Open));
-    let conclusion = serde_json::json!({ "verdict": "PASS" });
-    let left =
-        serde_json::json!({ "schema": 1, "run": { "id": run }, "conclusion": conclusion, "attachments": [] });
-    let hash = made.folder().blobs().put(left.to_string().as_bytes()).unwrap();
+    let left = left_pass(&made.folder(), &run);
     let told = || check(&made.folder()).unwrap().superseded.len();
     assert_eq!(told(), 1, "the control");
-    fs::write(made.folder().blobs().path(&hash), format!("{left} ")).unwrap();
+    fs::write(&left, [fs::read(&left).unwrap(), b" ".to_vec()].concat()).unwrap();
     assert_eq!(told(), 0);
 }
 
