@@ -88,6 +88,7 @@ codes::codes! {
         DatabaseGone [folder] => "store-without-database",
         Unrestored [folder] => "store-restore-unfinished",
         Database [path, doing] => "database-refuses",
+        Locked [path, doing] => "database-locked",
         Damaged [path] => "database-unreadable",
         Replaced [path] => "database-replaced",
         LockReplaced [path] => "store-lock-replaced",

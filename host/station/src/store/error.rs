@@ -67,6 +67,20 @@ pub enum StoreError {
         /// Why.
         source: DatabaseError,
     },
+    /// Another program holds the station's database.
+    #[error(
+        "another program has the database {} locked, which refuses {doing}; end that program, such as sqlite3 or one that \
+         copies the folder",
+        path.display()
+    )]
+    Locked {
+        /// The file.
+        path: PathBuf,
+        /// What was under way.
+        doing: &'static str,
+        /// What SQLite says.
+        source: DatabaseError,
+    },
     /// The database file is damaged or not a database, or the log beside it belongs to another one.
     #[error(
         "the database {} is damaged, or no database at all, or the station.db-wal beside it is the log of another \
@@ -272,6 +286,8 @@ impl StoreError {
         let (path, source) = (path.to_owned(), source.into());
         if source.is_damage() {
             Self::Damaged { path, source }
+        } else if source.is_lock() {
+            Self::Locked { path, doing, source }
         } else {
             Self::Database { path, doing, source }
         }

@@ -79,6 +79,12 @@ impl DatabaseError {
         matches!(error.code, ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase)
     }
 
+    /// Whether another program holds the file.
+    pub(crate) fn is_lock(&self) -> bool {
+        let code = if let Self::Sqlite(error) = self { error.sqlite_error_code() } else { None };
+        matches!(code, Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked))
+    }
+
     /// Whether the file could not be read, as opposed to another one that was to be written from it.
     pub(crate) fn is_of_reading(&self) -> bool {
         let code = if let Self::Sqlite(error) = self { error.sqlite_error() } else { None };
@@ -273,6 +279,7 @@ impl Drop for Open<'_, '_> {
 mod tests {
     use std::time::Duration;
 
+    use rusqlite::Connection;
     use tokio_postgres::{Config, NoTls};
 
     use super::*;
@@ -282,6 +289,17 @@ mod tests {
     fn a_disk_that_is_full_at_the_start_is_told_in_words() {
         let full = DatabaseError::from(rusqlite::Error::SqliteFailure(ffi::Error::new(4874), None));
         assert_eq!(full.to_string(), "the disk has no room for the file station.db-shm");
+    }
+
+    #[test]
+    fn a_file_that_another_program_holds_is_told_from_one_that_cannot_be_written() {
+        let place = tempfile::tempdir().unwrap();
+        let [held, other] = [(); 2].map(|()| Connection::open(place.path().join("station.db")).unwrap());
+        held.execute_batch("BEGIN IMMEDIATE").unwrap();
+        other.busy_timeout(Duration::ZERO).unwrap();
+        let begun = |sql: &str| DatabaseError::from(other.execute_batch(sql).unwrap_err());
+        assert!(begun("BEGIN IMMEDIATE").is_lock());
+        assert!(!begun("PRAGMA query_only = ON; CREATE TABLE run (id)").is_lock());
     }
 
     #[test]
