@@ -15,7 +15,7 @@ use halfrow::verdict::StoppedBy;
 use super::message::MOST_LINE;
 use super::{Control, FILE_MIB, Job, Message, Ruling};
 use crate::process_group::{command, kill, killed, waited};
-use crate::record::{BoardSeen, StepRecord, made_within};
+use crate::record::{BlobError, BoardSeen, StepRecord, made_within};
 use crate::said::{Said, Saying};
 
 /// How often the supervisor checks whether anybody wants the run to end.
@@ -105,7 +105,7 @@ pub fn supervise(
             took = lane.took;
             lane.end(end)
         }
-        Err(error) => End::Died(Saying::LaneNotStarted { error: error.to_string() }.into()),
+        Err(why) => End::Died(why),
     };
     LaneReport { steps, took, end }
 }
@@ -126,9 +126,12 @@ struct Lane {
 }
 
 impl Lane {
-    fn start(program: &Path, job: &Job, spool: &Path) -> io::Result<Self> {
-        made_within(spool)?;
-        let events = File::create(spool.join(EVENTS))?;
+    fn start(program: &Path, job: &Job, spool: &Path) -> Result<Self, Said> {
+        let unusable = |source| Said::of(&BlobError::Folder { path: spool.to_owned(), source });
+        made_within(spool).map_err(unusable)?;
+        let events = File::create(spool.join(EVENTS)).map_err(unusable)?;
+        let log = File::create(spool.join(LOG)).map_err(unusable)?;
+        let not_started = |error: io::Error| Said::from(Saying::LaneNotStarted { error: error.to_string() });
         // There are many lanes, and the board is what they wait for.
         let threads = std::env::var_os(THREADS).unwrap_or_else(|| "1".into());
         let mut child = command(program)
@@ -137,8 +140,9 @@ impl Lane {
             .env(THREADS, threads)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(File::create(spool.join(LOG))?)
-            .spawn()?;
+            .stderr(log)
+            .spawn()
+            .map_err(not_started)?;
         let (sender, lines) = mpsc::sync_channel(MOST_WAITING);
         let (stdout, stdin) = (child.stdout.take(), child.stdin.take());
         let room = FILE_MIB << 20;
@@ -147,8 +151,9 @@ impl Lane {
         match hear(stdout, sender).and_then(|()| lane.brief(stdin, job, spool)) {
             Ok(()) => Ok(lane),
             Err(error) => {
-                lane.end(End::Killed(Saying::LaneNotStarted { error: error.to_string() }.into()));
-                Err(error)
+                let why = not_started(error);
+                lane.end(End::Killed(why.clone()));
+                Err(why)
             }
         }
     }

@@ -1,5 +1,7 @@
 //! A lane as its supervisor sees it.
 
+use std::fs;
+use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
@@ -42,23 +44,27 @@ fn end_of(told: &str, silence: Duration, attendant: &mut dyn Attendant) -> End {
     end_of_script(&lane, String::new(), silence, attendant)
 }
 
+/// What a lane in `folder` is given to do, without a plan's text.
+fn job(folder: &Path) -> Job {
+    Job {
+        run: "run".to_owned(),
+        target: "mock".to_owned(),
+        plan: folder.join("plan.toml"),
+        text: String::new(),
+        sha256: String::new(),
+        variant: String::new(),
+        seed: 0,
+        is_mock: false,
+        spool: folder.to_owned(),
+        memory_mib: 4096,
+    }
+}
+
 /// The end of a lane that runs this script, with a plan of this text.
 fn end_of_script(lane: &str, text: String, silence: Duration, attendant: &mut dyn Attendant) -> End {
     let folder = folder();
     let lane = script(folder.path(), "lane", lane);
-    let [sha256, variant] = [""; 2].map(str::to_owned);
-    let job = Job {
-        run: "run".to_owned(),
-        target: "mock".to_owned(),
-        plan: folder.path().join("plan.toml"),
-        text,
-        sha256,
-        variant,
-        seed: 0,
-        is_mock: false,
-        spool: folder.path().to_owned(),
-        memory_mib: 64,
-    };
+    let job = Job { text, memory_mib: 64, ..job(folder.path()) };
     supervise(&lane, &job, folder.path(), Patience { silence, whole: HANG, tries: 2 }, attendant).end
 }
 
@@ -107,23 +113,25 @@ fn a_lane_that_ends_more_tries_than_its_plan_has_is_killed() {
 #[test]
 fn a_lane_whose_plan_is_another_one_refuses_it() {
     let place = folder();
-    let job = Job {
-        run: "run".to_owned(),
-        target: "mock".to_owned(),
-        plan: place.path().join("plan.toml"),
-        text: PLAN.to_owned(),
-        sha256: "0".repeat(64),
-        variant: String::new(),
-        seed: 0,
-        is_mock: false,
-        spool: place.path().to_owned(),
-        memory_mib: 4096,
-    };
+    let job = Job { text: PLAN.to_owned(), sha256: "0".repeat(64), ..job(place.path()) };
     let patience = Patience { silence: HANG, whole: HANG, tries: 2 };
     let report = supervise(program(), &job, place.path(), patience, &mut Slow(Duration::ZERO));
     let End::Refused(why) = report.end else { panic!("{report:?}") };
     assert_eq!(why.code, "plan-changed");
     assert!(report.steps.is_empty(), "the board was not touched");
+}
+
+/// Where it writes down what it did must be there first.
+#[test]
+fn a_lane_whose_folder_cannot_be_made_is_told_with_the_folder() {
+    let place = folder();
+    let (taken, spool) = (place.path().join("taken"), place.path().join("taken/run"));
+    fs::write(&taken, "").unwrap();
+    let patience = Patience { silence: HANG, whole: HANG, tries: 2 };
+    let report = supervise(program(), &job(place.path()), &spool, patience, &mut Slow(Duration::ZERO));
+    let End::Died(why) = report.end else { panic!("{report:?}") };
+    assert_eq!(why.code, "evidence-folder-unusable");
+    assert!(why.message.contains(&spool.display().to_string()), "{why}");
 }
 
 /// Its job is longer than what a pipe holds.
