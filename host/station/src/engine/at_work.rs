@@ -25,6 +25,8 @@ use crate::store::{AgainError, Folder, InLane, Owed};
 
 /// How often to check which boards are there.
 const LOOK: Duration = Duration::from_millis(500);
+/// How often the end looks whether it is over.
+const LOOK_AT_END: Duration = Duration::from_millis(10);
 
 /// What only the engine's thread has.
 pub(super) struct AtWork {
@@ -87,16 +89,23 @@ impl AtWork {
         // Nobody would put a lamp out over the next board.
         (0..self.lanes.len()).for_each(|lane| self.hook(lane, None));
         let hooks = std::mem::take(&mut self.lanes).into_iter().flat_map(|of| of.hooks.into_threads());
-        for thread in std::mem::take(&mut self.threads).into_iter().chain(hooks) {
+        let threads: Vec<_> = std::mem::take(&mut self.threads).into_iter().chain(hooks).collect();
+        while threads.iter().any(|thread| !thread.is_finished()) {
+            inbox.recv_timeout(LOOK_AT_END).into_iter().for_each(|input| self.told_of_hook(input));
+        }
+        for thread in threads {
             if thread.join().is_err() {
                 tracing::error!("a thread of a lane ended early; look at what it said before");
             }
         }
         labgrid::wait_until_left(self.shared.settings.lanes.iter().map(|lane| &lane.board));
-        while let Ok(input) = inbox.try_recv() {
-            if let Input::Heard { lane, heard: heard @ LaneEvent::Hook { .. } } = input {
-                self.heard(lane, heard);
-            }
+        inbox.try_iter().for_each(|input| self.told_of_hook(input));
+    }
+
+    /// Takes what a hook reports while nothing else counts any more.
+    fn told_of_hook(&mut self, input: Input) {
+        if let Input::Heard { lane, heard: heard @ LaneEvent::Hook { .. } } = input {
+            self.heard(lane, heard);
         }
     }
 
