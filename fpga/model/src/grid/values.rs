@@ -128,7 +128,7 @@ impl RowValues {
     }
 
     /// The output column at which the source column `source` appears: between two columns, or beyond the row's end at the rate
-    /// there.
+    /// there, but at most a row's width away.
     pub(crate) fn output(&self, source: f64) -> f64 {
         let columns = self.segments.len() << self.nodes.k;
         let at = |column: usize| self.coordinate(column) as f64 / f64::from(1 << 28);
@@ -138,8 +138,10 @@ impl RowValues {
             *(if at(middle) <= source { &mut low } else { &mut high }) = middle;
         }
         let rate = at(high) - at(low);
-        // A row whose source does not move shows no other source anywhere.
-        low as f64 + if rate > 0.0 { (source - at(low)) / rate } else { 0.0 }
+        // A row whose source does not move shows no other source anywhere, and one whose source hardly moves at its end shows it
+        // nowhere near.
+        let found = low as f64 + if rate > 0.0 { (source - at(low)) / rate } else { 0.0 };
+        found.clamp(-(columns as f64), 2.0 * columns as f64)
     }
 }
 
