@@ -173,6 +173,18 @@ fn what_each_projection_leaves_is_told() {
     assert!(text.contains("rim max") && text.contains("level lines bend as before"), "{text}");
 }
 
+/// With the axis at 96, 127, row 0 of a near grid would begin farther right than a board can look ahead; mirrored, it need not.
+#[test]
+fn a_grid_that_is_worse_than_fitted_rows_is_warned_of() {
+    for (column, is_worse) in [("96", true), ("31", false)] {
+        let lens = ["--width", "128", "--height", "128", "--radius", "128", "--centre-y", "127"];
+        let told = Folder::new()
+            .halfrow([&["lens", "--projection", "exact", "--centre-x", column], &lens[..]].concat());
+        let warned = told.stdout.contains("farther off here than fitted rows");
+        assert_eq!((told.code, warned), (Some(0), is_worse), "{}", told.stdout);
+    }
+}
+
 /// The grid is extended beyond the end of the exact projection, so none of its rows is left as it was.
 #[test]
 fn a_lens_that_misses_the_frame_gives_no_grid_either() {

@@ -17,6 +17,10 @@ const WORTH_A_RING: f64 = 0.05;
 /// Shapes to which a grid is fitted: those whose closed form has the least largest error.
 const TRIED: usize = 2;
 
+/// The most entries of a grid that is fitted. The time of a fit grows with the entries and with the square of the grid rows, and
+/// with so many the closed form is next to exact.
+const MOST_FITTED: usize = 8192;
+
 /// The board has too few entries for any grid that suits these frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
@@ -44,11 +48,12 @@ impl Camera {
     /// gives the same grid.
     #[must_use]
     pub fn fitted_grid(&self, shape: GridShape) -> TableSet {
-        fitted(self, shape, &self.lattice(), self.shortest_ring()).1
+        fitted(self, shape, &self.lattice(), Some(self.shortest_ring())).1
     }
 
     /// The grid of at most `entries` entries with the least largest error in the inner part of the picture, preferably one that
-    /// the smallest ring for this width can serve: another one only if it is more than 0.05 columns nearer.
+    /// the smallest ring for this width can serve: another one only if it is more than 0.05 columns nearer. If no ring can serve
+    /// any, it is the one that would have the least error with a ring that could.
     ///
     /// # Errors
     /// [`GridRoomError`] when every grid has more entries.
@@ -75,21 +80,35 @@ impl Camera {
         let shapes: Vec<_> = all.filter(|shape| shape.entries(geometry) <= entries).collect();
         let lattice = self.lattice();
         let served_by = |ring| self.best_of(&shapes, &lattice, ring);
-        let best = served_by(self.shortest_ring()).map(|short| {
+        let best = served_by(Some(self.shortest_ring())).map(|short| {
             if short.0 <= WORTH_A_RING {
                 return short;
             }
-            served_by(LONGEST_RING).filter(|long| long.0 + WORTH_A_RING < short.0).unwrap_or(short)
+            let long = served_by(Some(LONGEST_RING));
+            let best = long.filter(|long| long.0 + WORTH_A_RING < short.0).unwrap_or(short);
+            if best.0.is_finite() { best } else { served_by(None).unwrap_or(best) }
         });
         best.map(|(_, tables)| tables).ok_or_else(|| self.no_room(entries, coarsest))
     }
 
-    /// The best grid of one of these shapes that a ring of `ring` samples can serve, and its largest error; none without shapes.
-    fn best_of(&self, shapes: &[GridShape], lattice: &Lattice, ring: usize) -> Option<(f64, TableSet)> {
-        let closed = |&shape: &GridShape| (lattice.error(&self.grid_by_formula(shape), ring), shape);
-        let mut shapes: Vec<_> = shapes.iter().map(closed).collect();
-        shapes.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let tried = shapes.into_iter().take(TRIED).map(|(_, shape)| fitted(self, shape, lattice, ring));
+    /// The best grid of one of these shapes that a ring of `ring` samples, if one is given, can serve, and its largest error; none
+    /// without shapes.
+    fn best_of(
+        &self,
+        shapes: &[GridShape],
+        lattice: &Lattice,
+        ring: Option<usize>,
+    ) -> Option<(f64, TableSet)> {
+        let closed = |&shape: &GridShape| {
+            let table = self.grid_by_formula(shape);
+            (lattice.error(&table, ring), shape, table)
+        };
+        let mut closed: Vec<_> = shapes.iter().map(closed).collect();
+        closed.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let is_large = |shape: &GridShape| shape.entries(self.geometry()) > MOST_FITTED;
+        let (large, small): (Vec<_>, Vec<_>) = closed.into_iter().partition(|(_, shape, _)| is_large(shape));
+        let fitted = small.into_iter().take(TRIED).map(|(_, shape, _)| fitted(self, shape, lattice, ring));
+        let tried = fitted.chain(large.into_iter().take(1).map(|(error, _, table)| (error, table)));
         tried.min_by(|one, other| one.0.total_cmp(&other.0))
     }
 

@@ -134,9 +134,14 @@ impl Fit<'_> {
 }
 
 /// The table of shape `shape` that takes the outputs of `lattice` from nearest to the right places: out of the closed form and
-/// every round's fit, as integers, the one with the least largest error in the inner part that a ring of `ring` samples can serve,
-/// and that error.
-pub(super) fn fitted(camera: &Camera, shape: GridShape, lattice: &Lattice, ring: usize) -> (f64, TableSet) {
+/// every round's fit, as integers, the one with the least largest error in the inner part that a ring of `ring` samples, if one is
+/// given, can serve, and that error.
+pub(super) fn fitted(
+    camera: &Camera,
+    shape: GridShape,
+    lattice: &Lattice,
+    ring: Option<usize>,
+) -> (f64, TableSet) {
     let closed = Spline::of_camera(camera, shape);
     let table = closed.table(camera);
     let weight = |&(_, part): &(f64, Part)| match part {

@@ -57,9 +57,13 @@ impl Lattice {
         Self { wanted: wanted.collect(), columns, rows }
     }
 
-    /// The largest error of the inner part; infinite when a ring of `ring` samples cannot serve `tables`.
-    pub(super) fn error(&self, tables: &TableSet, ring: usize) -> f64 {
-        if tables.check_ring(ring).is_ok() { self.residuals(tables).inner.max } else { f64::INFINITY }
+    /// The largest error of the inner part; infinite when a ring of `ring` samples, if one is given, cannot serve `tables`.
+    pub(super) fn error(&self, tables: &TableSet, ring: Option<usize>) -> f64 {
+        if ring.is_none_or(|ring| tables.check_ring(ring).is_ok()) {
+            self.residuals(tables).inner.max
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// The errors that `tables` leave.

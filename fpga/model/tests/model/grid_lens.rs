@@ -2,7 +2,7 @@
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResidual, GridResiduals, GridShape,
-    RowFactor, TableSet, exact_inverse,
+    LONGEST_RING, RowFactor, TableError, TableSet, exact_inverse,
 };
 use proptest::prelude::*;
 
@@ -125,6 +125,28 @@ fn a_grid_that_is_much_nearer_may_need_a_longer_ring() {
     assert!(best.check_ring(256).is_err() && best.check_ring(512).is_ok());
     let found = residuals(&camera, &best, 1).inner.max;
     assert!(found < 0.2, "{found}");
+}
+
+/// Next to a pole in the upper left, rows begin so far right that a board would have to look ahead too far.
+#[test]
+fn where_no_ring_serves_a_grid_the_best_one_is_refused() {
+    let geometry = Geometry::centred(96, 96, BitDepth::Twelve).unwrap();
+    let lens = Equidistant::from_radius(96.0).unwrap();
+    let camera = Camera::new(geometry, lens.into(), (95.0, 95.0), 180.0).unwrap();
+    let best = camera.best_grid(2048).unwrap();
+    let found = residuals(&camera, &best, 1).inner.max;
+    assert!(found < 0.5, "{found}");
+    let refused = best.check_ring(LONGEST_RING);
+    assert!(matches!(refused, Err(TableError::LookAhead { .. })), "{refused:?}");
+}
+
+/// The finest two have 83 · 202 and 83 · 102 entries, which would take too long to fit.
+#[test]
+fn a_grid_of_very_many_entries_is_not_fitted() {
+    let camera = paper((2592, 400), 1.0);
+    let [few, many] = [2048, 20_000].map(|entries| camera.best_grid_with_k(5, entries).unwrap());
+    assert!(many.entries().len() <= 8192, "{:?}", many.shape());
+    assert!(largest(&camera, &many) < 1.01 * largest(&camera, &few));
 }
 
 #[test]

@@ -169,14 +169,35 @@ impl<'a> Figures<'a> {
         lines
             .push("above 0.05: the share of the inner part that is off by more than 0.05 pixels.".to_owned());
         lines.push("Rows are kept (Eq. 7): level lines bend as before.".to_owned());
-        let beyond = 100.0 * self.optics.camera.share_beyond();
-        if beyond > 0.0 {
-            lines.push(format!(
+        lines.extend(self.beyond());
+        lines.extend(self.warning());
+        lines
+    }
+
+    /// A line about outputs that have no exact place, if there are any.
+    fn beyond(&self) -> Option<String> {
+        let camera = &self.optics.camera;
+        let beyond = 100.0 * camera.share_beyond();
+        (beyond > 0.0).then(|| {
+            format!(
                 "{beyond:.1} % of the outputs show what lies beyond 90 degrees, which has no exact place: a grid goes on there as \
                  at the rim, above and below the poles as in the row next to them."
-            ));
-        }
-        lines
+            )
+        })
+    }
+
+    /// A line for a grid that is visibly worse than factors of rows, since no ring serves a better one.
+    fn warning(&self) -> Option<String> {
+        let inner = |is_wanted: fn(TablesBy) -> bool| {
+            self.all.iter().find(|left| is_wanted(left.by)).map(|left| left.residuals.inner)
+        };
+        let exact = inner(|by| matches!(by, TablesBy::Exact { .. }))?;
+        let fitted = inner(|by| by == TablesBy::Fitting)?;
+        (exact.visible > 0.0 && exact.amounts.max > fitted.amounts.max).then(|| {
+            "The exact projection is farther off here than fitted rows: no better grid that a board takes was found, so use \
+             fitted rows (--rows fitted)."
+                .to_owned()
+        })
     }
 
     fn json(&self, map: Option<&Value>) -> Value {
