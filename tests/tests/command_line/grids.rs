@@ -185,6 +185,23 @@ fn a_grid_that_is_worse_than_fitted_rows_is_warned_of() {
     }
 }
 
+/// By hand: r = θ − 0.2 · θ³ turns back at √(5/3), 73.97 degrees.
+#[test]
+fn the_angle_beyond_which_nothing_has_a_place_is_the_lens_s() {
+    let folder = Folder::new();
+    folder.write(
+        "lens.json",
+        r#"{"K": [[50, 0, 80], [0, 50, 60], [0, 0, 1]], "D": [-0.2, 0, 0, 0], "width": 160, "height": 120}"#,
+    );
+    let told = folder.halfrow(["lens", "--lens", "lens.json", "--field-of-view", "147.8"]);
+    assert!(
+        told.stdout.contains("show what lies beyond 74 degrees, which"),
+        "{}{}",
+        told.stdout,
+        told.stderr
+    );
+}
+
 /// The grid is extended beyond the end of the exact projection, so none of its rows is left as it was.
 #[test]
 fn a_lens_that_misses_the_frame_gives_no_grid_either() {

@@ -1,5 +1,7 @@
 //! The exact projection at a lattice of outputs, and how far tables deviate from it.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::projection::{POLE, ProjectedRow};
 use super::residual_sum::{GridResidual, ResidualSum};
 use crate::{Camera, RowValues, TableSet};
@@ -19,14 +21,15 @@ pub struct GridResiduals {
     pub inner: GridResidual,
     /// In the rest of the circle: the rim and what is next to the poles.
     pub rim: GridResidual,
-    /// The share of the frame's outputs outside the circle, 0 to 1: those that show what is beyond 90 degrees, or a pole.
+    /// The share of the frame's outputs outside the circle, 0 to 1: those that show what is beyond 90 degrees or beyond where r(θ)
+    /// turns back, or a pole.
     pub beyond: f64,
 }
 
 /// Where in the picture an output lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
-    /// It shows nothing within 90 degrees of the axis, or it shows a pole.
+    /// It shows nothing within 90 degrees of the axis, nothing within where r(θ) turns back, or a pole.
     Outside,
     /// Next to the rim or to a pole.
     Rim,
@@ -46,11 +49,14 @@ impl Lattice {
     pub(super) fn new(camera: &Camera, column_step: usize, row_step: usize) -> Self {
         let (columns, rows) =
             (steps(camera.geometry().width(), column_step), steps(camera.geometry().height(), row_step));
+        // Where the lens images 90 degrees, the source says what an output shows, also on the rim itself.
+        let has_rim = camera.lens().widest() >= FRAC_PI_2;
         let wanted = rows.iter().flat_map(|&row| {
             let projected = ProjectedRow::new(camera, row as f64);
             let of = |&column: &usize| {
                 let source = projected.source(column as f64);
-                (source, part(camera, source, row))
+                let is_shown = has_rim || projected.shows(column);
+                (source, if is_shown { part(camera, source, row) } else { Part::Outside })
             };
             columns.iter().map(of).collect::<Vec<_>>()
         });
@@ -136,7 +142,8 @@ impl Camera {
         tables.map(|tables| lattice.residuals(tables))
     }
 
-    /// The share of the frame's outputs, 0 to 1, that show what is beyond 90 degrees off the axis, or a pole.
+    /// The share of the frame's outputs, 0 to 1, that show what is beyond 90 degrees off the axis or beyond where r(θ) turns back,
+    /// or a pole.
     #[must_use]
     pub fn share_beyond(&self) -> f64 {
         let (width, height) = (self.geometry().width(), self.geometry().height());

@@ -56,8 +56,13 @@ impl<'a> ProjectedRow<'a> {
 
     /// How many of the outputs at columns 0 to `width` − 1 show something in front of the lens.
     pub(super) fn shown(&self, width: usize) -> usize {
+        (0..width).filter(|&column| self.shows(column)).count()
+    }
+
+    /// Whether the output at `column` shows something in front of the lens.
+    pub(super) fn shows(&self, column: usize) -> bool {
         let [first, last] = self.outputs.map(|output| output + self.camera.centre().0);
-        (0..width).filter(|&column| (first..=last).contains(&(column as f64))).count()
+        (first..=last).contains(&(column as f64))
     }
 
     /// The column where the exact projection puts the source at column `source`: where the lens images its longitude on the

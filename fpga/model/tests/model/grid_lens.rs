@@ -2,7 +2,7 @@
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResidual, GridResiduals, GridShape,
-    LONGEST_RING, RowFactor, TableError, TableSet, exact_inverse,
+    LONGEST_RING, Profile, RowFactor, TableError, TableSet, exact_inverse,
 };
 use proptest::prelude::*;
 
@@ -147,6 +147,24 @@ fn a_grid_of_very_many_entries_is_not_fitted() {
     let [few, many] = [2048, 20_000].map(|entries| camera.best_grid_with_k(5, entries).unwrap());
     assert!(many.entries().len() <= 8192, "{:?}", many.shape());
     assert!(largest(&camera, &many) < 1.01 * largest(&camera, &few));
+}
+
+/// By hand: r = 50 · (θ − 0.2 · θ³) turns back at θ = √(5/3), 43.03 columns from the axis. On its row 87 of 160 outputs show
+/// something, and outputs that show nothing must not draw the others away.
+#[test]
+fn beyond_where_a_lens_turns_back_outputs_count_nowhere() {
+    let geometry = Geometry::centred(160, 120, BitDepth::Twelve).unwrap();
+    let profile = Profile::KannalaBrandt([-0.2, 0.0, 0.0, 0.0]);
+    let lens = CalibratedLens::new(profile, [[50.0, 0.0], [0.0, 50.0]]).unwrap();
+    let camera = Camera::new(geometry, lens.clone(), (80.0, 60.0), 147.8).unwrap();
+    let best = camera.best_grid(2048).unwrap();
+    let found = residuals(&camera, &best, 1);
+    assert_close(found.beyond, camera.share_beyond());
+    let low = Geometry::centred(160, 1, BitDepth::Twelve).unwrap();
+    let flat = Camera::new(low, lens, (80.0, 0.0), 147.8).unwrap();
+    assert_close(flat.share_beyond(), 1.0 - 87.0 / 160.0);
+    let rows = residuals(&camera, &camera.fitted(), 1);
+    assert!(found.inner.max < 0.6 * rows.inner.max, "{found:?} {rows:?}");
 }
 
 #[test]

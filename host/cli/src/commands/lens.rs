@@ -178,9 +178,10 @@ impl<'a> Figures<'a> {
     fn beyond(&self) -> Option<String> {
         let camera = &self.optics.camera;
         let beyond = 100.0 * camera.share_beyond();
+        let end = (10.0 * camera.lens().widest().to_degrees().min(90.0)).round() / 10.0;
         (beyond > 0.0).then(|| {
             format!(
-                "{beyond:.1} % of the outputs show what lies beyond 90 degrees, which has no exact place: a grid goes on there as \
+                "{beyond:.1} % of the outputs show what lies beyond {end} degrees, which has no exact place: a grid goes on there as \
                  at the rim, above and below the poles as in the row next to them."
             )
         })
