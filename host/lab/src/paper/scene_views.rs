@@ -23,6 +23,9 @@ const OPTIMISED: &str = "Carroll et al.";
 /// The vertical lines of the scene in the table, in degrees of longitude.
 const LONGITUDES: [i32; 5] = [15, 30, 45, 60, 75];
 
+/// How far outside of the middles of its outermost pixels a picture reaches, in pixels: half of one, and what rounding adds.
+const EDGE: f64 = 0.5 + 1e-6;
+
 /// The lines reach from −60° to 60° of latitude.
 const REACH: i32 = 60;
 
@@ -104,7 +107,7 @@ impl Subject {
         sampled(&self.fisheye, self.centre.0 + self.scale * x, self.centre.1 + self.scale * y)
     }
 
-    /// The subject in a projection, black where the lens sees nothing.
+    /// The subject in a projection, black where the lens sees nothing and where the photograph has ended.
     fn picture(&self, view: View, name: &str, caption: &str) -> Picture {
         let places = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (row, column)));
         let data = places.flat_map(|(row, column)| {
@@ -201,8 +204,12 @@ fn table_of(kept: &[Quality], lines: usize) -> Table {
     }
 }
 
-/// The colour of `image` at column `x`, row `y`, by bilinear interpolation.
+/// The colour of `image` at column `x`, row `y`, by bilinear interpolation; black outside of it.
 fn sampled(image: &RgbImage, x: f64, y: f64) -> [u8; 3] {
+    let is_within = |at: f64, count: usize| (-EDGE..=count as f64 - 1.0 + EDGE).contains(&at);
+    if !(is_within(x, image.width) && is_within(y, image.height)) {
+        return [0; 3];
+    }
     let x = x.clamp(0.0, image.width as f64 - 1.0);
     let y = y.clamp(0.0, image.height as f64 - 1.0);
     let (left, top) = (x as usize, y as usize);
@@ -245,4 +252,19 @@ fn spread(lens: &Equidistant, view: View, longitude: i32) -> f64 {
         .map(column)
         .fold((f64::MAX, f64::MIN), |(least, most), x| (least.min(x), most.max(x)));
     ends.1 - ends.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outside_of_a_photograph_nothing_is_seen() {
+        let image = RgbImage { width: 2, height: 1, data: vec![10, 20, 30, 50, 60, 70] };
+        assert_eq!(sampled(&image, 0.5, 0.0), [30, 40, 50]);
+        assert_eq!([sampled(&image, -0.5, 0.5), sampled(&image, 1.5, -0.5)], [[10, 20, 30], [50, 60, 70]]);
+        for (x, y) in [(-0.6, 0.0), (1.6, 0.0), (0.0, -0.6), (0.0, 0.6)] {
+            assert_eq!(sampled(&image, x, y), [0; 3], "{x}, {y}");
+        }
+    }
 }
