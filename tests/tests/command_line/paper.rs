@@ -139,8 +139,9 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
             file(320, &[lines[0].clone(), json!({ "from": [9, 9], "to": [9, 9], "is": "level" })]),
             "entry 2 of `lines` in lines.json",
         ),
-        // Both its ends lie four such radii from the middle.
+        // Both its ends lie four such radii from the middle, or one and a half.
         (file(45, &lines[..1]), "entry 1 of `lines` in lines.json"),
+        (file(120, &lines[..1]), "entry 1 of `lines` in lines.json"),
     ] {
         folder.write("lines.json", content);
         refused(&folder, &[&["paper", "-o", "out"], &call[..]].concat(), said);

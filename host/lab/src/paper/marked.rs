@@ -68,7 +68,7 @@ pub enum MarkedError {
         /// The radius.
         radius: f64,
     },
-    /// A marked line is too short, or lies where the projection shows nothing.
+    /// A marked line is too short, or ends outside of the image circle.
     #[error(
         "entry {number} of `lines` in {} is too short, or lies beyond what a projection shows; mark it inside of the image circle",
         path.display()
@@ -124,7 +124,11 @@ impl MarkedPhotograph {
         let Circle { centre: [column, row], radius } = content.circle;
         let lens = Equidistant::from_radius(RADIUS).ok().filter(|_| radius >= 1.0);
         let lens = lens.ok_or_else(|| MarkedError::Radius { path: path(), radius })?;
-        let ray = |[x, y]: [f64; 2]| lens.ray((x - column) / radius * RADIUS, (y - row) / radius * RADIUS);
+        let ray = |[x, y]: [f64; 2]| {
+            let (right, down) = ((x - column) / radius, (y - row) / radius);
+            let is_inside = right.hypot(down) <= 1.0;
+            lens.ray(right * RADIUS, down * RADIUS).filter(|_| is_inside)
+        };
         let marked = content.lines.iter().zip(1..).map(|(line, number)| {
             let ends = ray(line.from).zip(ray(line.to));
             let found = ends.and_then(|(from, to)| Line::between([from, to], line.is));
