@@ -91,17 +91,27 @@ fn check_model(keys: &Keys<'_>) -> Result<(), LensContentError> {
 
 /// fx, skew, cx, fy and cy.
 fn matrix(keys: &Keys<'_>) -> Result<[f64; 5], LensContentError> {
-    if let Some((key, value)) = keys.find(&FOUR_INTRINSICS).filter(|_| keys.find(&MATRIX).is_none()) {
-        let found = numbers(key, value)?;
-        let [fx, fy, cx, cy] = found[..] else { return Err(LensContentError::Matrix) };
+    let Some((second, four)) = keys.find(&FOUR_INTRINSICS) else { return Ok(nine(keys)?.1) };
+    let [fx, fy, cx, cy] = numbers(second, four)?[..] else { return Err(LensContentError::Matrix) };
+    if keys.find(&MATRIX).is_none() {
         return Ok([fx, 0.0, cx, fy, cy]);
     }
+    let (first, found) = nine(keys)?;
+    let [of_nine_fx, _, of_nine_cx, of_nine_fy, of_nine_cy] = found;
+    if [of_nine_fx, of_nine_fy, of_nine_cx, of_nine_cy] != [fx, fy, cx, cy] {
+        return Err(LensContentError::Twice { first: quoted(first), second: quoted(second) });
+    }
+    Ok(found)
+}
+
+/// The key of the camera matrix, and its fx, skew, cx, fy and cy.
+fn nine<'a>(keys: &Keys<'a>) -> Result<(&'a str, [f64; 5]), LensContentError> {
     let (key, value) = keys.get("camera matrix", &MATRIX)?;
     match numbers(key, value)?[..] {
         [fx, skew, cx, zero, fy, cy, left, middle, one]
             if [zero, left, middle, one] == [0.0, 0.0, 0.0, 1.0] =>
         {
-            Ok([fx, skew, cx, fy, cy])
+            Ok((key, [fx, skew, cx, fy, cy]))
         }
         _ => Err(LensContentError::Matrix),
     }

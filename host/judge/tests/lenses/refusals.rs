@@ -156,6 +156,15 @@ fn several_cameras_are_refused() {
 }
 
 #[test]
+fn a_matrix_and_four_numbers_must_say_the_same() {
+    let both =
+        |cx: f64| format!("{CAMCHAIN}  camera_matrix: [552.25, 0, {cx}, 0, 549.125, 358.25, 0, 0, 1]\n");
+    assert_eq!(LensFile::parse(&both(641.5)), LensFile::parse(CAMCHAIN));
+    let (first, second) = ("camera_matrix".to_owned(), "intrinsics".to_owned());
+    assert_eq!(refusal(&both(600.0)), LensContentError::Twice { first, second });
+}
+
+#[test]
 fn files_of_other_kinds_are_refused() {
     assert_eq!(refusal("<?xml version=\"1.0\"?>\n<opencv_storage>\n"), LensContentError::Xml);
     assert_eq!(refusal(""), LensContentError::Empty);
