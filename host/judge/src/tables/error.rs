@@ -193,8 +193,8 @@ pub enum MemError {
     /// The image is for another datapath.
     #[error(transparent)]
     Datapath(#[from] WrongDatapath),
-    /// The comment at the head of the memory image lacks a number.
-    #[error("its comments give no whole number as `{key}=`; write the file again with `halfrow tables`", key = .0.key())]
+    /// The comment at the head of the memory image lacks a number, or gives two.
+    #[error("its comments give no single whole number as `{key}=`; write the file again with `halfrow tables`", key = .0.key())]
     Header(Place),
     /// The comments at the head of a kernel's memory image do not say that its weights are in the core's order.
     #[error("its comments do not say `{order}`; write the file again with `halfrow tables`")]

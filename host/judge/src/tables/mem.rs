@@ -216,7 +216,10 @@ fn datapath(text: &str) -> Result<Datapath, MemError> {
 }
 
 /// The number given in the comments as `key=number`.
-fn noted<T: FromStr>(text: &str, place: Place) -> Result<T, MemError> {
-    let mut values = notes(text).filter_map(|note| note.strip_prefix(place.key())?.strip_prefix('='));
-    values.next().and_then(|value| value.parse().ok()).ok_or(MemError::Header(place))
+fn noted<T: FromStr + PartialEq>(text: &str, place: Place) -> Result<T, MemError> {
+    let mut values = notes(text)
+        .filter_map(|note| note.strip_prefix(place.key())?.strip_prefix('='))
+        .map(|value| value.parse().ok());
+    let first = values.next().flatten();
+    first.filter(|first| values.all(|other| other.as_ref() == Some(first))).ok_or(MemError::Header(place))
 }

@@ -129,9 +129,14 @@ fn a_header_without_a_number_names_the_number() {
         let text = tables_text(&tables()).replace(&format!("{}=", place.key()), "x=");
         assert_eq!(parse_tables(&text), Err(MemError::Header(place)));
     }
+    // A second number says nothing if it is the same, and otherwise it is unclear which is meant.
+    let with =
+        |note: &str| parse_tables(&tables_text(&tables()).replace("height=3", &format!("height=3 {note}")));
+    assert_eq!(with("height=3"), Ok(tables()));
+    assert_eq!(with("centre2=64"), Err(MemError::Header(Place::Centre2)));
     let refused = parse_tables(&tables_text(&tables()).replace("width=64", "width=-64")).unwrap_err();
     let sentence =
-        "its comments give no whole number as `width=`; write the file again with `halfrow tables`";
+        "its comments give no single whole number as `width=`; write the file again with `halfrow tables`";
     assert_eq!(refused.to_string(), sentence);
 }
 
