@@ -12,7 +12,7 @@
 //! {"datapath": 2, …, "v": 5, "k": 6, "grid": [entries, column by column], "kernel": […]}
 //! ```
 //!
-//! The numbers are those of DATAPATH.md. The only other key is `about`, an object that is kept as it is and never
+//! The numbers are those of DATAPATH.md. The only other key is `about`, an object that is kept, its numbers as doubles, and never
 //! interpreted. A kernel file has `kernel`; `datapath` and `about` are optional there. Every value is checked before it is
 //! used, so that a typing error does not look like a broken board.
 
