@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use numpy::PyReadonlyArray2;
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 
-use crate::errors;
 use crate::kernel::KernelLike;
 use crate::lens::LensLike;
 use crate::tables::Tables;
+use crate::{arrays, errors};
 
 /// The longest representation of a value that a message repeats, in bytes.
 const LONGEST: usize = 40;
@@ -29,7 +29,6 @@ arguments! {
     name: PathBuf, "one of halfrow.KERNELS, or a kernel file";
     degrees: f64, "an angle in degrees";
     kernel: Option<KernelLike<'py>>, "a Kernel, one of halfrow.KERNELS, or a kernel file";
-    weights: PyReadonlyArray2<'py, f64>, "an array of float64 of shape (65, 5), as numpy.asarray(weights, numpy.float64) makes one";
     width: Option<usize>, "a number of columns";
     height: Option<usize>, "a number of rows";
     bits: u32, "8, 10 or 12";
@@ -44,6 +43,26 @@ arguments! {
 /// The `lens` that makes a Lens, and so is none.
 pub(crate) fn lens_file(given: &Bound<'_, PyAny>) -> PyResult<Option<PathBuf>> {
     given.extract().map_err(|_| wrong_kind(given, "lens", "a lens file, or \"equidistant:RADIUS\""))
+}
+
+/// The `weights` that make a Kernel.
+pub(crate) fn weights<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray2<'py, f64>> {
+    let takes = "an array of float64 of shape (65, 5), as numpy.asarray(weights, numpy.float64) makes one";
+    let weights: PyReadonlyArray2<'py, f64> =
+        given.extract().map_err(|_| wrong_kind(given, "weights", takes))?;
+    if arrays::is_masked(given)? {
+        return Err(errors::wrong_value(
+            "weights is a masked array, and a kernel has no mask; give weights.filled(0), or put right what is masked",
+        ));
+    }
+    // Such an array is read at steps of whole elements. NumPy's own flag allows half of one where the processor does.
+    let is_whole = |stride: &isize| stride.unsigned_abs().is_multiple_of(size_of::<f64>());
+    if !(weights.is_aligned() && weights.strides().iter().all(is_whole)) {
+        return Err(errors::wrong_value(
+            "weights is not aligned in memory, like a field of a structured array; give numpy.array(weights), a copy that is",
+        ));
+    }
+    Ok(weights)
 }
 
 /// Refuses a `progress` that cannot be called.

@@ -107,7 +107,7 @@ fn instead(what: &str, copy: String) -> String {
 }
 
 /// Whether it is a masked array, whose data alone would be taken.
-fn is_masked(array: &Bound<'_, PyAny>) -> PyResult<bool> {
+pub(crate) fn is_masked(array: &Bound<'_, PyAny>) -> PyResult<bool> {
     if array.is_exact_instance_of::<PyUntypedArray>() {
         return Ok(false);
     }

@@ -42,7 +42,7 @@ impl Kernel {
 
     /// The kernel with these real weights: an array of float64 of shape (65, 5), with a row for each x = 0, 1/32, …, 2 and the
     /// weights of G0, R1, G4, R5 and G6, each −2 to 2 − 2⁻¹⁴, rounded to 14 fractional bits. The weights of G2 and R3 follow
-    /// from them.
+    /// from them. Arrays that are masked or not aligned are refused.
     #[staticmethod]
     #[pyo3(signature = (weights, *, name = "own"))]
     fn from_weights(

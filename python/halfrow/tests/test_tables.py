@@ -120,6 +120,23 @@ def test_a_kernel_is_its_weights(tmp_path, name):
     assert halfrow.Kernel(tmp_path / "kernel.json") == kernel
 
 
+def test_weights_that_would_be_read_wrongly_are_refused():
+    weights = halfrow.Kernel("keys").weights
+    # Nodes 44 bytes apart, and nodes that begin at an odd address.
+    field = np.zeros(65, [("weights", "f8", (5,)), ("node", "i4")])["weights"]
+    odd = np.zeros(weights.nbytes + 1, np.uint8)[1:].view(np.float64).reshape(weights.shape)
+    for array in (field, odd):
+        array[:] = weights
+        with pytest.raises(halfrow.InputError, match="not aligned") as raised:
+            halfrow.Kernel.from_weights(array)
+        assert raised.value.code == "usage-value-wrong"
+        assert halfrow.Kernel.from_weights(np.array(array)) == halfrow.Kernel("keys")
+    with pytest.raises(halfrow.InputError, match="masked"):
+        halfrow.Kernel.from_weights(np.ma.array(weights, mask=weights > 1))
+    for array in (np.asfortranarray(weights), weights[::-1].copy()[::-1], np.stack([weights, weights], 2)[..., 1]):
+        assert halfrow.Kernel.from_weights(array) == halfrow.Kernel("keys")
+
+
 def test_notes_stay_with_what_they_are_about(tmp_path, small):
     about = {"who": "unit 7", "when": [2026, None, 0.1]}
 
