@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
+use pyo3::types::{PyByteArray, PyBytes};
 
 use crate::kernel::KernelLike;
 use crate::lens::LensLike;
@@ -13,9 +14,12 @@ use crate::{arrays, errors};
 /// The longest representation of a value that a message repeats, in bytes.
 const LONGEST: usize = 40;
 
+/// What an argument takes that is a path.
+const PATH: &str = "a path as str or os.PathLike, as os.fsdecode makes one of bytes";
+
 /// Functions for `from_py_with`, each with the name of the argument that it takes.
 macro_rules! arguments {
-    ($($name:ident: $kind:ty, $takes:literal;)+) => {$(
+    ($($name:ident: $kind:ty, $takes:expr;)+) => {$(
         pub(crate) fn $name<'py>(given: &Bound<'py, PyAny>) -> PyResult<$kind> {
             given.extract().map_err(|_| wrong_kind(given, stringify!($name), $takes))
         }
@@ -29,6 +33,8 @@ arguments! {
     name: PathBuf, "one of halfrow.KERNELS, or a kernel file";
     degrees: f64, "an angle in degrees";
     kernel: Option<KernelLike<'py>>, "a Kernel, one of halfrow.KERNELS, or a kernel file";
+    path: PathBuf, PATH;
+    folder: PathBuf, PATH;
     width: Option<usize>, "a number of columns";
     height: Option<usize>, "a number of rows";
     bits: u32, "8, 10 or 12";
@@ -63,6 +69,12 @@ pub(crate) fn weights<'py>(given: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArra
         ));
     }
     Ok(weights)
+}
+
+/// Refuses bytes, which are no path and no frame, as the value of the argument `name`.
+pub(crate) fn check_no_bytes(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    let is_bytes = given.is_instance_of::<PyBytes>() || given.is_instance_of::<PyByteArray>();
+    if is_bytes { Err(wrong_kind(given, name, PATH)) } else { Ok(()) }
 }
 
 /// Refuses a `progress` that cannot be called.

@@ -18,7 +18,7 @@ use crate::{arguments, arrays, choices, errors, outputs};
 #[pyo3(signature = (path, *, bits = 12, phase = "grbg", raw = None, width = None, height = None))]
 pub(crate) fn read_frame<'py>(
     py: Python<'py>,
-    path: PathBuf,
+    #[pyo3(from_py_with = arguments::path)] path: PathBuf,
     #[pyo3(from_py_with = arguments::bits)] bits: u32,
     phase: &str,
     raw: Option<&str>,
@@ -53,7 +53,7 @@ pub(crate) fn read_frame<'py>(
 #[pyo3(signature = (path, frame, *, bits = 12, phase = "grbg", overwrite = false))]
 pub(crate) fn write_frame(
     py: Python<'_>,
-    path: PathBuf,
+    #[pyo3(from_py_with = arguments::path)] path: PathBuf,
     frame: &Bound<'_, PyAny>,
     #[pyo3(from_py_with = arguments::bits)] bits: u32,
     phase: &str,

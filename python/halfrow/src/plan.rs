@@ -220,6 +220,7 @@ fn source(
         (path, frame)
     } else {
         let name = format!("frames[{place}]");
+        arguments::check_no_bytes(given, &name)?;
         let frame = frames::frame_of(given, &name, depth.bits(), phase.name())?;
         (name.into(), frame)
     };

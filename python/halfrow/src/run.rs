@@ -7,7 +7,7 @@ use halfrow::{Finished, ReportFolder};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
-use crate::{errors, outputs};
+use crate::{arguments, errors, outputs};
 
 /// What a run found, from which halfrow/_report.py makes a Report.
 #[pyclass(frozen, module = "halfrow")]
@@ -43,7 +43,12 @@ impl Run {
     }
 
     /// Writes report.json, report.xml (JUnit) and report.html into the folder `path`.
-    fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
+    fn save(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::folder)] path: PathBuf,
+        overwrite: bool,
+    ) -> PyResult<()> {
         outputs::check_report(&path, overwrite)?;
         let Finished { report, evidence } = &self.finished;
         py.detach(|| ReportFolder::prepare(&path, overwrite)?.commit(report, evidence))

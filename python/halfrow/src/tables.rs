@@ -69,7 +69,7 @@ impl Tables {
     #[pyo3(signature = (path, *, kernel = None))]
     fn read(
         py: Python<'_>,
-        path: PathBuf,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
         #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
     ) -> PyResult<Self> {
         let (mut file, files) = if TableFormat::of(&path) == Ok(TableFormat::Mem) {

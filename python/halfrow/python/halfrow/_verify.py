@@ -105,7 +105,7 @@ def verify(
 
 def _several(frames: object) -> object:
     """The frames as a tuple. What holds no frames stays as it is, and is refused with the other options."""
-    if isinstance(frames, (str, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim <= 2:
+    if isinstance(frames, (str, bytes, bytearray, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim <= 2:
         return (frames,)
     return tuple(frames) if isinstance(frames, Iterable) else frames
 
