@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use halfrow::call::Files;
 use halfrow::frames::{self, Format, RawGeometry, RawLayout, ReadOptions, UnknownLayout, preview};
 use halfrow::model::Frame;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyUntypedArrayMethods as _};
@@ -61,7 +62,7 @@ pub(crate) fn write_frame(
 ) -> PyResult<()> {
     let frame = frame_of(frame, "frame", bits, phase)?;
     Format::of(&path).map_err(errors::input)?;
-    outputs::check_files([&path], overwrite)?;
+    outputs::check_files(Files::new(overwrite), [&path])?;
     py.detach(|| frames::write(&path, &frame, overwrite)).map_err(errors::failed)
 }
 

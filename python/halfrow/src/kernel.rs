@@ -1,8 +1,8 @@
 //! Interpolation kernels.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use halfrow::call::Input;
+use halfrow::call::{Files, Input};
 use halfrow::model::{self, Interpolant, Taps, WEIGHT_ONE};
 use halfrow::optics;
 use halfrow::tables::KernelFile;
@@ -28,6 +28,8 @@ pub(crate) struct Kernel {
     pub(crate) asked: Option<PathBuf>,
     /// The file that it was read from.
     pub(crate) file: Option<Input>,
+    /// The table files that it came with.
+    pub(crate) came_with: Vec<PathBuf>,
 }
 
 #[pymethods]
@@ -37,7 +39,8 @@ impl Kernel {
     fn new(py: Python<'_>, #[pyo3(from_py_with = arguments::name)] name: PathBuf) -> PyResult<Self> {
         let read = py.detach(|| optics::kernel_file(name.as_os_str()));
         let (KernelFile { kernel, about }, file) = read.map_err(errors::optics)?;
-        Ok(Self { kernel, about, name: name.display().to_string(), asked: Some(name), file })
+        let came_with = Vec::new();
+        Ok(Self { kernel, about, name: name.display().to_string(), asked: Some(name), file, came_with })
     }
 
     /// The kernel with these real weights: an array of float64 of shape (65, 5), with a row for each x = 0, 1/32, …, 2 and the
@@ -59,7 +62,8 @@ impl Kernel {
         let node = |node: usize| std::array::from_fn(|tap| weights[[node, tap]]);
         let nodes: Vec<[f64; 5]> = (0..weights.nrows()).map(node).collect();
         let kernel = model::Kernel::from_weights(&nodes).map_err(errors::input)?;
-        Ok(Self { kernel, about: None, name: name.to_owned(), asked: None, file: None })
+        let came_with = Vec::new();
+        Ok(Self { kernel, about: None, name: name.to_owned(), asked: None, file: None, came_with })
     }
 
     /// How many samples it reads: 5 or 7.
@@ -80,11 +84,16 @@ impl Kernel {
     }
 
     /// Writes it to a kernel file (JSON), with the notes of the file that it was read from. An existing file is replaced only
-    /// with `overwrite`.
+    /// with `overwrite`, and the file that it was read from never.
     #[pyo3(signature = (path, *, overwrite = false))]
-    fn write(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
+    fn write(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+        overwrite: bool,
+    ) -> PyResult<()> {
         let file = KernelFile { kernel: self.kernel.clone(), about: self.about.clone() };
-        outputs::check_files([&path], overwrite)?;
+        outputs::check_files(self.read_by(Files::new(overwrite)), [&path])?;
         py.detach(|| file.write(&path, overwrite)).map_err(errors::failed)
     }
 
@@ -94,6 +103,13 @@ impl Kernel {
 
     fn __eq__(&self, other: &Self) -> bool {
         self.kernel == other.kernel
+    }
+}
+
+impl Kernel {
+    /// `files` with those that it was read from.
+    pub(crate) fn read_by(&self, files: Files) -> Files {
+        files.reads(&self.came_with).reads_kernel(self.asked.as_deref().map(Path::as_os_str))
     }
 }
 

@@ -7,12 +7,12 @@ use pyo3::prelude::*;
 
 use crate::errors;
 
-/// Checks that the files `paths`, which the argument `path` names, can be written.
+/// Checks that the files `paths`, which the argument `path` names, can be written beside those that `files` has.
 pub(crate) fn check_files<P: Into<PathBuf>>(
+    files: Files,
     paths: impl IntoIterator<Item = P>,
-    overwrite: bool,
 ) -> PyResult<()> {
-    Files::new(overwrite).writes("path", paths).check().map_err(errors::input)
+    files.writes("path", paths).check().map_err(errors::input)
 }
 
 /// Checks that a report can be written to the argument `folder`.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use halfrow::call::Input;
+use halfrow::call::{Files, Input};
 use halfrow::model::{Interpolant, RowFactor};
 use halfrow::optics::{self, Chosen, Optics, View};
 use halfrow::tables::{TableFile, TableFormat, datapath_of, mem};
@@ -88,11 +88,19 @@ impl Tables {
     }
 
     /// Writes them with their kernel to NAME.json, with the notes of the file that they were read from, or for NAME.mem to two
-    /// files with memory images. Existing files are replaced only with `overwrite`.
+    /// files with memory images. Existing files are replaced only with `overwrite`, and those that they were read from never: the
+    /// lens's, the tables' or the kernel's.
     #[pyo3(signature = (path, *, overwrite = false))]
-    fn write(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
+    fn write(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arguments::path)] path: PathBuf,
+        overwrite: bool,
+    ) -> PyResult<()> {
         let format = TableFormat::of(&path).map_err(errors::input)?;
-        outputs::check_files(format.places(&path), overwrite)?;
+        let read = self.files.iter().map(|file| &file.path);
+        let files = self.kernel.read_by(Files::new(overwrite).reads(read));
+        outputs::check_files(files, format.places(&path))?;
         let Chosen { tables, kernel, .. } = &self.chosen;
         let file = TableFile { tables: tables.clone(), kernel: kernel.clone(), about: self.about.clone() };
         py.detach(|| format.write(&file, &path, overwrite)).map_err(errors::failed)
@@ -222,6 +230,7 @@ impl Tables {
                 name: OF_FILE.to_owned(),
                 asked: None,
                 file: chosen.kernel_file.clone(),
+                came_with: files.iter().map(|file| file.path.clone()).collect(),
             },
         };
         Ok(Self { chosen, about: None, kernel, files })

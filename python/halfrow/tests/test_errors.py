@@ -160,6 +160,37 @@ def test_no_input_of_a_run_is_overwritten(tmp_path, program, monkeypatch):
         assert (tmp_path / name).read_bytes() == before, name
 
 
+def test_no_file_that_tables_or_a_kernel_came_from_is_overwritten(tmp_path, program, monkeypatch, opencv):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "lens.json").write_bytes(opencv.read_bytes())
+    halfrow.Kernel("keys").write("k.json")
+    made = halfrow.Tables.from_lens("lens.json", kernel="k.json")
+    made.write("t.json")
+    made.write("t.mem")
+    read, images = halfrow.Tables.read("t.json"), halfrow.Tables.read("t.mem")
+    tables = ["tables", "--lens", "lens.json", "--kernel", "k.json", "--overwrite", "-o"]
+    for name, call, arguments in [
+        ("lens.json", made.write, [*tables, "lens.json"]),
+        ("k.json", made.write, [*tables, "k.json"]),
+        ("k.json", made.kernel.write, None),
+        ("t.json", read.write, None),
+        ("t.json", read.kernel.write, None),
+        ("t.json", halfrow.Tables.from_lens("lens.json", kernel=read.kernel).write, None),
+        ("t.steps.mem", images.kernel.write, None),
+    ]:
+        before = (tmp_path / name).read_bytes()
+        written = lambda: call(name, overwrite=True)  # noqa: B023, E731
+        if arguments:
+            refused_as_by_the_program(program, written, arguments, "input-would-be-overwritten")
+        else:
+            with pytest.raises(halfrow.InputError) as raised:
+                written()
+            assert raised.value.code == "input-would-be-overwritten", name
+        assert (tmp_path / name).read_bytes() == before, name
+    made.write("other.json")
+    made.write("other.json", overwrite=True)
+
+
 
 def test_an_error_says_what_is_wrong_and_what_to_do(tmp_path):
     with pytest.raises(halfrow.InputError) as raised:
