@@ -52,7 +52,7 @@ pub(crate) fn failed<E: Error + 'static>(error: E) -> PyErr {
 /// The exception for a run for which the system has no thread, as `error` says.
 pub(crate) fn no_thread(error: &io::Error) -> PyErr {
     let told = format!(
-        "this computer has no thread left to judge on ({error}); end other programs, or allow this user more processes, then run again"
+        "this computer has no thread left to work on ({error}); end other programs, or allow this user more processes, then run again"
     );
     exception(Whose::World, &Problem::new(NO_THREAD, told))
 }

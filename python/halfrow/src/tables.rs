@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use halfrow::call::{Files, Input};
 use halfrow::model::{Interpolant, RowFactor};
-use halfrow::optics::{self, Chosen, Optics, View};
+use halfrow::optics::{self, Chosen, Optics, TablesBy, View};
+use halfrow::progress::Progress;
 use halfrow::tables::{TableFile, TableFormat, datapath_of, mem};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -13,6 +14,7 @@ use serde_json::{Map, Value};
 use crate::choices::{self, OfGrid};
 use crate::kernel::{Kernel, KernelLike};
 use crate::lens::{Lens, LensLike};
+use crate::watched::watched;
 use crate::{arguments, errors, outputs};
 
 /// The name of a kernel that comes with a table file.
@@ -37,7 +39,8 @@ impl Tables {
     /// `projection` is "rows", one factor per row, or "exact", a grid of at most `entries` entries (default 2048), for boards
     /// with datapath 2; `nodes_every` is 32 or 64, for one that takes only grids with a node every so many columns. `rows` says
     /// how row factors are found: "fitted" (the default for a lens file) or "equation-9" (the default for other lenses). `kernel`
-    /// is a Kernel, one of `halfrow.KERNELS`, or a kernel file. Raises InputError.
+    /// is a Kernel, one of `halfrow.KERNELS`, or a kernel file. Ctrl-C, or any signal handler that raises, raises here at once; a
+    /// grid that is being found then is so in the background. Raises InputError.
     #[staticmethod]
     #[pyo3(signature = (lens = None, *, projection = "rows", rows = None, entries = None, nodes_every = None, kernel = None))]
     fn from_lens(
@@ -54,7 +57,14 @@ impl Tables {
             None => Lens::seen(py, None, &View::default())?.optics,
         };
         optics.by = choices::tables_by(rows, projection, &OfGrid { entries, nodes_every }, optics.by)?;
-        let chosen = py.detach(|| optics::choose(None, optics, None)).map_err(errors::optics)?;
+        let chosen = match optics.by {
+            // This may take many seconds, which nothing can end early.
+            TablesBy::Exact { .. } => {
+                watched(py, None, None, move |_: &dyn Progress| optics::choose(None, optics, None))?
+            }
+            TablesBy::Fitting | TablesBy::Equation9 => py.detach(|| optics::choose(None, optics, None)),
+        };
+        let chosen = chosen.map_err(errors::optics)?;
         let from = chosen.optics.source_of(&chosen.tables);
         let kernel = kernel.unwrap_or_else(|| KernelLike::Name(Interpolant::Hermite.name().into()));
         let files = chosen.optics.file.iter().cloned().collect();

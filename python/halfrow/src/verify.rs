@@ -52,7 +52,7 @@ pub(crate) fn verify(
     let record = asked.record.as_deref().map(|path| RecordingFile::prepare(path, asked.overwrite));
     let record = record.transpose().map_err(errors::input)?;
     let job = Job { plan, options, target, recording, record, report };
-    let done = watched(py, asked.progress.as_ref(), &is_stopped, move |progress| job.run(progress))?;
+    let done = watched(py, asked.progress.as_ref(), Some(&is_stopped), move |progress| job.run(progress))?;
     let Done { finished, not_begun } = done.map_err(|error| errors::raised(Whose::Call, error.as_ref()))?;
     let raised = not_begun.map(|error| errors::raised(Whose::World, error.as_ref()).into_value(py));
     Ok((Run { finished }, raised))

@@ -25,11 +25,11 @@ enum Message<T> {
 ///
 /// If a signal handler (such as that of Ctrl-C) or the listener raises, `is_stopped` is set, and the exception is passed on when
 /// the work has ended in order. If another exception is raised before that, it is passed on at once, and the work ends by itself
-/// on its thread.
+/// on its thread. Work that cannot be stopped has no `is_stopped`: then the first exception is passed on at once.
 pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     listener: Option<&Bound<'_, PyAny>>,
-    is_stopped: &AtomicBool,
+    is_stopped: Option<&AtomicBool>,
     work: impl FnOnce(&dyn Progress) -> T + Send + 'static,
 ) -> PyResult<T> {
     let (sender, told) = mpsc::channel();
@@ -55,9 +55,7 @@ pub(crate) fn watched<T: Send + 'static>(
             Err(RecvTimeoutError::Disconnected) => return Err(without_result(worker)),
         };
         if let Err(error) = outcome {
-            if raised.is_some() {
-                return Err(error);
-            }
+            let Some(is_stopped) = is_stopped.filter(|_| raised.is_none()) else { return Err(error) };
             is_stopped.store(true, Ordering::Relaxed);
             raised = Some(error);
         }

@@ -137,6 +137,31 @@ def test_weights_that_would_be_read_wrongly_are_refused():
         assert halfrow.Kernel.from_weights(array) == halfrow.Kernel("keys")
 
 
+def test_ctrl_c_ends_the_search_for_a_grid():
+    """The process ends while the search goes on, for many seconds, in a thread of its own."""
+    made = """
+        import os, signal, threading, time, halfrow
+
+        def searches():
+            return any(open(f"/proc/self/task/{task}/comm").read() == "run\\n" for task in os.listdir("/proc/self/task"))
+
+        def interrupt(thread):
+            while not searches():
+                time.sleep(0.01)
+            signal.pthread_kill(thread, signal.SIGINT)
+
+        # The shell has commands in the background ignore it.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        threading.Thread(target=interrupt, args=[threading.get_ident()], daemon=True).start()
+        try:
+            halfrow.Tables.from_lens(halfrow.Lens(width=640, height=480), projection="exact", entries=8192)
+        except KeyboardInterrupt:
+            print("interrupted", searches())
+    """
+    ended = subprocess.run([sys.executable, "-c", textwrap.dedent(made)], capture_output=True, text=True, timeout=100)
+    assert ended.stdout == "interrupted True\n", ended.stderr
+
+
 def test_notes_stay_with_what_they_are_about(tmp_path, small):
     about = {"who": "unit 7", "when": [2026, None, 0.1]}
 
