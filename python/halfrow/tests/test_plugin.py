@@ -130,9 +130,13 @@ def test_it(halfrow_board):
     assert len(kept(pytester)) == 3
     others = [pytester.path / "kept/notes.txt", next((pytester.path / "kept").glob("*/0")).parent / "notes.txt"]
     [other.write_text("mine") for other in others]
-    for without_tests in ("--collect-only", "--setup-plan", "--setup-only", "--fixtures"):
-        run(1, *FAILING, without_tests)
+    wrong = pytester.makepyfile(test_wrong="def (")
+    for without_tests in (["--collect-only"], ["--setup-plan"], ["--setup-only"], ["--fixtures"], [], ["-k", "none_at_all"]):
+        run(1, *FAILING, *without_tests)
         assert len(kept(pytester)) == 3, without_tests
+    wrong.unlink()
+    run(1, *FAILING, "-k", "none_at_all")
+    assert len(kept(pytester)) == 3
     run(1, "--halfrow-board", "mock,fault=stuck-data,bit=3", *FAILING[2:]).assert_outcomes(failed=1)
     assert [headline for headline in kept(pytester).values() if "bit 3" in headline and "bit 7" not in headline]
     assert len(kept(pytester)) == 1
@@ -161,6 +165,17 @@ def test_it(halfrow_board):
 """)
     pytester.runpytest_subprocess(*FAILING[2:]).assert_outcomes(passed=1)
     assert not kept(pytester)
+
+
+def test_a_subtest_that_fails_shows_its_own_reports(pytester):
+    pytester.makepyfile(SMALL + """
+def test_it(halfrow_board, subtests):
+    for seed in (1, 2):
+        with subtests.test(seed=seed):
+            assert judged(halfrow_board, seed=seed)
+""")
+    result = pytester.runpytest_subprocess(*FAILING)
+    assert [place.rsplit("/", 1)[1] for place in named(result)] == ["0", "1"], result.outlines
 
 
 def test_the_options_are_explained(pytester):

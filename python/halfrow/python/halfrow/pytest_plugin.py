@@ -12,13 +12,17 @@ import contextlib
 import hashlib
 import pathlib
 import re
-from typing import Any, Generator, List, Optional
+from typing import Any, Dict, Generator, List, Optional
 
 import pytest
 
 from . import HalfrowError, Report, verify
 
-_REPORTS = pytest.StashKey[List[Report]]()
+# Attributes of tests and of the configuration. Before pytest 7 neither has a stash, and a plugin that cannot be imported would
+# end every run, also of those who do not use it.
+_REPORTS = "_halfrow_reports"
+_TOLD = "_halfrow_told"
+_FOLDER = "_halfrow_folder"
 # The files of a report.
 _FILES = ("report.html", "report.json", "report.xml")
 # A file in the folder of --halfrow-report that lists what was kept there, one name per line.
@@ -92,9 +96,6 @@ class _Folder:
                 place.rmdir()
 
 
-_FOLDER = pytest.StashKey[Optional[_Folder]]()
-
-
 def _folder_name(test: str) -> str:
     """A folder name that no other test has: as much of the test's id as a file system takes, and a hash."""
     readable = re.sub(r"[^\w.-]+", "-", test).strip("-").encode()[-_LENGTH:].decode(errors="ignore")
@@ -120,15 +121,25 @@ def pytest_configure(config: pytest.Config) -> None:
     named = config.getoption("--halfrow-report")
     # Fixtures may be set up without a test that runs; --setup-plan also sets this option.
     runs_none = config.getoption("collectonly") or config.getoption("setuponly", False)
-    config.stash[_FOLDER] = None if named is None or runs_none else _Folder(named, config.invocation_params.dir)
+    setattr(config, _FOLDER, None if named is None or runs_none else _Folder(named, config.invocation_params.dir))
+
+
+def _folder_of(config: pytest.Config) -> Optional[_Folder]:
+    return getattr(config, _FOLDER, None)
 
 
 # Not when the session starts: one that shows fixtures, say, runs no tests.
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtestloop(session: pytest.Session) -> None:
-    folder = session.config.stash[_FOLDER]
+    config = session.config
+    folder = _folder_of(config)
     # When a worker of pytest-xdist begins, others may already have kept reports.
-    if folder is None or hasattr(session.config, "workerinput"):
+    if folder is None or hasattr(config, "workerinput"):
+        return
+    # No test is run then. That of pytest-xdist which hands tests out has collected none itself.
+    if session.testsfailed and not config.getoption("continue_on_collection_errors", False):
+        return
+    if not session.items and not config.pluginmanager.hasplugin("dsession"):
         return
     try:
         folder.begin()
@@ -139,12 +150,13 @@ def pytest_runtestloop(session: pytest.Session) -> None:
 @pytest.fixture
 def halfrow_board(request: pytest.FixtureRequest) -> JudgedBoard:
     """The board that --halfrow-board names. Its reports are attached to the test if that fails."""
-    folder = request.config.stash[_FOLDER]
+    folder = _folder_of(request.config)
     if folder is not None:
         folder.clear(request.node)
     # A test that is tried again begins without reports.
     reports: List[Report] = []
-    request.node.stash[_REPORTS] = reports
+    setattr(request.node, _REPORTS, reports)
+    setattr(request.node, _TOLD, {})
     return JudgedBoard(request.config.getoption("--halfrow-board"), reports)
 
 
@@ -154,8 +166,12 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, None]:
     told = outcome.get_result()
     if not told.failed:
         return
-    folder = item.config.stash[_FOLDER]
-    reports: List[Report] = item.stash.get(_REPORTS, [])
-    for number, report in enumerate(reports):
+    folder = _folder_of(item.config)
+    reports: List[Report] = getattr(item, _REPORTS, [])
+    # Each subtest of a phase fails by itself, and reports that were told of an earlier one are not its own.
+    is_told: Dict[str, int] = getattr(item, _TOLD, {})
+    first = is_told.get(told.when, 0)
+    is_told[told.when] = len(reports)
+    for number, report in enumerate(reports[first:], first):
         kept = "" if folder is None else folder.keep(item, number, report)
         told.sections.append((f"halfrow: {report.verdict} of {report.board.target}", report.text + kept))
