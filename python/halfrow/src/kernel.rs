@@ -14,7 +14,7 @@ use crate::{arguments, errors, outputs};
 
 /// An interpolation kernel as a board stores it: 65 nodes of five weights each.
 ///
-/// `name` is one of `halfrow.KERNELS`, or the path of a kernel file. Raises InputError when it is neither.
+/// `name` is one of `halfrow.KERNELS`, by default "hermite", or the path of a kernel file. Raises InputError when it is neither.
 #[pyclass(frozen, module = "halfrow")]
 #[derive(Clone)]
 pub(crate) struct Kernel {

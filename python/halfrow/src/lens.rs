@@ -18,7 +18,7 @@ use crate::{arguments, choices, errors, frames};
 /// `width` (even, 64 to 2592) and `height` (1 to 2048) are by default those of the lens file's pictures, or else 1920 x 1080.
 /// Frames of another size scale the lens, and must have the same aspect ratio. `bits` is 8, 10 or 12. `centre_x` and `centre_y`,
 /// the column and row of the lens's axis, are by default the file's, or else the middle. `field_of_view` is the angle across the
-/// image circle, in degrees.
+/// image circle, in degrees, by default 180.
 ///
 /// Raises InputError when a file cannot be read or holds no such lens, or when the lens is not possible with such frames.
 #[pyclass(frozen, module = "halfrow")]

@@ -270,7 +270,8 @@ class Report:
     def save(self, folder: Union[str, os.PathLike[str]], *, overwrite: bool = False) -> None:
         """Writes report.json, report.xml (JUnit) and report.html into `folder`, which must not exist unless `overwrite`.
 
-        Works only in the process that made the run, since no other has its frames.
+        Works only in the process that made the run, since no other has its frames. Frames that were equal are not kept unless
+        verify was given `report`, so the page has pictures only of others.
         """
         if self._run is None:
             raise ValueError(
