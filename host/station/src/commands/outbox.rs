@@ -118,7 +118,15 @@ fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<
     }
     let mut store = at_station(folder, &why.operator, &format!("outbox again {sink}"))?;
     let again = store.send_again(sink, why.by())?;
-    print(&format!("{again} of {sink} {} sent again", verb(again, "are")))
+    let unsent = Snapshot::take(folder)?.unsent()?;
+    let dead = unsent.into_iter().find(|unsent| unsent.sink == sink).map_or(0, |unsent| unsent.dead);
+    let rest = match dead {
+        0 => String::new(),
+        _ => format!(
+            "; `halfrow-station outbox release --sink {sink}` has {dead} more tried, which wait for a person"
+        ),
+    };
+    print(&format!("{again} of {sink} {} sent again{rest}", verb(again, "are")))
 }
 
 fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
