@@ -80,7 +80,7 @@ fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
             }
             p { (show::told(&visit.words.tell(said))) }
             @if visit.may(Who::Engineer) {
-                (fields(visit))
+                (fields(visit, ""))
                 input type="hidden" name="sink" value=(sink);
                 button { (visit.say("outbox.release")) }
             }

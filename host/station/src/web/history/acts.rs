@@ -22,17 +22,18 @@ use crate::web::visit::Visit;
 /// The pattern of a device's number, for the browser.
 const DEVICE: &str = "[0-9a-f]{16}";
 
-/// Why an act was refused, for the page on which it was asked for.
+/// Why an act was refused, for the page on which it was asked for, and what was typed there.
 #[derive(Debug)]
 pub(super) struct RefusedAct {
     pub(super) status: StatusCode,
     code: String,
     told: Sentence,
+    typed: Rebind,
 }
 
 impl RefusedAct {
-    fn new(visit: &Visit, status: StatusCode, said: &Said) -> Self {
-        Self { status, code: said.code.clone(), told: visit.words.tell(said) }
+    fn new(visit: &Visit, (status, said): (StatusCode, &Said), typed: Rebind) -> Self {
+        Self { status, code: said.code.clone(), told: visit.words.tell(said), typed }
     }
 
     /// The reason with its code.
@@ -54,6 +55,7 @@ pub(super) async fn waive(
     Form(Waive { reason }): Form<Waive>,
 ) -> Result<Response, Trouble> {
     let (run, name) = (id.clone(), visit.name().to_owned());
+    let typed = Rebind { reason: reason.clone(), ..Rebind::default() };
     let (status, said) = match Reason::of(&reason) {
         Ok(reason) => match app.change(&visit, move |store| store.waive(&run, &name, &reason)).await? {
             Ok(_) => return Ok(Redirect::to(&show::run_address(&id)).into_response()),
@@ -61,7 +63,7 @@ pub(super) async fn waive(
         },
         Err(error) => (StatusCode::BAD_REQUEST, Said::of(&error)),
     };
-    let refused = RefusedAct::new(&visit, status, &said);
+    let refused = RefusedAct::new(&visit, (status, &said), typed);
     run::shown(app, visit, id, Some(refused)).await
 }
 
@@ -73,9 +75,8 @@ const fn not_waived(error: &NoWaiver) -> StatusCode {
     }
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
-#[derive(Default)]
 pub(super) struct Rebind {
     serial: String,
     product: String,
@@ -88,8 +89,8 @@ pub(super) async fn rebind(
     visit: Visit,
     Form(asked): Form<Rebind>,
 ) -> Result<Response, Trouble> {
-    let serial = asked.serial.clone();
-    let name = visit.name().to_owned();
+    let (typed, name) = (asked.clone(), visit.name().to_owned());
+    let serial = typed.serial.clone();
     let (status, said) = match Reason::of(&asked.reason) {
         Ok(reason) => match app.change(&visit, move |store| asked.rebind(store, &name, &reason)).await? {
             Ok(_) => return Ok(Redirect::to(&unit_address(&serial)).into_response()),
@@ -97,7 +98,7 @@ pub(super) async fn rebind(
         },
         Err(error) => (StatusCode::BAD_REQUEST, Said::of(&error)),
     };
-    let refused = RefusedAct::new(&visit, status, &said);
+    let refused = RefusedAct::new(&visit, (status, &said), typed);
     unit::shown(app, visit, RunFilter::of_serial(&serial), Some(refused)).await
 }
 
@@ -120,22 +121,25 @@ const fn not_rebound(error: &RebindError) -> StatusCode {
 }
 
 /// The form by which an engineer waives the FAIL of a run that has no waiver.
-pub(super) fn waive_form(visit: &Visit, run: &UnitRun) -> Markup {
+pub(super) fn waive_form(visit: &Visit, run: &UnitRun, refused: Option<&RefusedAct>) -> Markup {
     let is_open = run.line.verdict == Some(Verdict::Fail) && run.waivers.is_empty();
     html! {
         @if is_open && visit.may(Who::Engineer) {
             form.change method="post" action=(format!("{}/waive", show::run_address(&run.line.id))) autocomplete="off" {
                 h2 { (visit.say("waive.title")) }
                 p.soft { (visit.say("waive.about")) }
-                (fields(visit))
+                (fields(visit, refused.map_or("", |refused| &refused.typed.reason)))
                 button { (visit.say("waive.waive")) }
             }
         }
     }
 }
 
-/// The form by which an engineer says which device a unit has from then on.
-pub(super) fn rebind_form(visit: &Visit, unit: &Unit) -> Markup {
+/// The form by which an engineer says which device a unit has from then on. After a refusal it is as it was sent: an empty device
+/// would ask for something else.
+pub(super) fn rebind_form(visit: &Visit, unit: &Unit, refused: Option<&RefusedAct>) -> Markup {
+    let typed = refused.map(|refused| &refused.typed).filter(|typed| typed.product == unit.product);
+    let (device, reason) = typed.map_or(("", ""), |typed| (&typed.device, &typed.reason));
     html! {
         @if visit.may(Who::Engineer) {
             form.change method="post" action="/unit/rebind" autocomplete="off" {
@@ -144,19 +148,19 @@ pub(super) fn rebind_form(visit: &Visit, unit: &Unit) -> Markup {
                 input type="hidden" name="serial" value=(unit.serial);
                 input type="hidden" name="product" value=(unit.product);
                 label { span { (visit.say("rebind.device")) }
-                    input name="device" maxlength="16" pattern=(DEVICE) spellcheck="false" placeholder=(visit.say("rebind.next"));
+                    input name="device" value=(device) maxlength="16" pattern=(DEVICE) spellcheck="false" placeholder=(visit.say("rebind.next"));
                 }
-                (fields(visit))
+                (fields(visit, reason))
                 button { (visit.say("rebind.rebind")) }
             }
         }
     }
 }
 
-/// The mark of the form, and the reason.
-pub(in crate::web) fn fields(visit: &Visit) -> Markup {
+/// The mark of the form, and the reason as far as it is typed.
+pub(in crate::web) fn fields(visit: &Visit, reason: &str) -> Markup {
     html! {
         input type="hidden" name="csrf" value=(visit.csrf);
-        label { span { (visit.say("history.reason")) } input name="reason" required maxlength=(MOST_REASON); }
+        label { span { (visit.say("history.reason")) } input name="reason" value=(reason) required maxlength=(MOST_REASON); }
     }
 }

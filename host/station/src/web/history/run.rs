@@ -63,14 +63,14 @@ pub(super) async fn shown(
     let status = refused.as_ref().map_or(StatusCode::OK, |refused| refused.status);
     let content = html! {
         @if let Some(refused) = &refused { (refused.markup()) }
-        (content(&visit, &found))
+        (content(&visit, &found, refused.as_ref()))
     };
     let verdict = found.run.line.verdict.map(|verdict| verdict.to_string());
     let title = format!("{} {}", found.run.line.serial, verdict.unwrap_or_default());
     Ok(Page { here: Here::History, title: &title, head: show::head(), content }.with_status(&visit, status))
 }
 
-fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
+fn content(visit: &Visit, Found { run, record, kept }: &Found, refused: Option<&RefusedAct>) -> Markup {
     let line = &run.line;
     let read = record.as_ref().and_then(|record| record.as_ref().ok());
     html! {
@@ -89,7 +89,7 @@ fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
                 (measurements(visit, record))
             }
             (files(visit, run, kept))
-            (acts::waive_form(visit, run))
+            (acts::waive_form(visit, run, refused))
         }
     }
 }

@@ -47,13 +47,13 @@ pub(super) async fn shown(
     let status = refused.as_ref().map_or(StatusCode::OK, |refused| refused.status);
     let content = html! {
         @if let Some(refused) = &refused { (refused.markup()) }
-        @for unit in &units { (of(&visit, &asked, unit)) }
+        @for unit in &units { (of(&visit, &asked, unit, refused.as_ref())) }
     };
     let page = Page { here: Here::History, title: &asked.serial, head: show::head(), content };
     Ok(page.with_status(&visit, status))
 }
 
-fn of(visit: &Visit, asked: &RunFilter, unit: &Unit) -> Markup {
+fn of(visit: &Visit, asked: &RunFilter, unit: &Unit, refused: Option<&RefusedAct>) -> Markup {
     let more = unit.runs.len().saturating_sub(MOST_RUNS);
     html! {
         section.unit {
@@ -68,7 +68,7 @@ fn of(visit: &Visit, asked: &RunFilter, unit: &Unit) -> Markup {
             (flips(visit, unit))
             (devices(visit, &unit.bindings))
             (mismatch::table(visit, &unit.mismatches))
-            (acts::rebind_form(visit, unit))
+            (acts::rebind_form(visit, unit, refused))
             h2 { (visit.say("history.every")) }
             ol.story { @for run in unit.runs.iter().take(MOST_RUNS) { (story(visit, run)) } }
             @if more > 0 {

@@ -91,6 +91,9 @@ fn an_engineer_waives_a_fail_once_and_with_a_reason_and_everyone_sees_it() {
         assert!(empty.text().contains(said) && empty.text().contains("reason-missing"), "{}", empty.text());
         assert!(empty.text().contains(&form), "and the form is there still");
     }
+    let long = "y".repeat(501);
+    let typed = engineer.post(&act, &[("reason", &long)]).send().text();
+    assert!(typed.contains(&format!("name=\"reason\" value=\"{long}\"")), "with what was typed: {typed}");
     assert_eq!(station.query("SELECT id FROM waiver"), Vec::<String>::new());
     let given = engineer.post(&act, &[("reason", "the lamp's cable, <not> the board")]).send();
     assert_eq!((given.status, given.headers["location"].as_str()), (303, path.as_str()));
@@ -138,6 +141,12 @@ fn an_engineer_binds_a_unit_to_another_device_with_a_reason() {
         let refused = bind(&engineer, device, reason);
         assert_eq!(refused.status, 400, "{device}");
         assert!(refused.text().contains(code) && refused.text().contains(form), "{}", refused.text());
+        // Empty, the field would ask for the device of the next judgement.
+        for typed in [("device", device), ("reason", reason)]
+            .map(|(name, is)| format!("name=\"{name}\" value=\"{is}\""))
+        {
+            assert!(refused.text().contains(&typed), "{typed}: {}", refused.text());
+        }
     }
     assert_eq!(station.query(holds), ["0000000000000001"]);
     assert_eq!(bind(&engineer, "00000000000000ff", "FPGA exchanged").status, 303);
