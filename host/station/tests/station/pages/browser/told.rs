@@ -40,14 +40,18 @@ const CUT: &str = "(() => {
     const found = [];
     for (const lane of document.querySelectorAll('.lane')) {
         const say = what => found.push(`${lane.dataset.lane} ${lane.className}: ${what}`);
-        for (const part of lane.querySelectorAll('.does, .asks')) {
+        for (const part of lane.querySelectorAll('.word, .serial, .does, .asks')) {
             const box = part.getBoundingClientRect(), end = lane.getBoundingClientRect().top + lane.clientTop + lane.clientHeight;
-            const isHidden = part.matches('.asks') && !part.checkVisibility();
-            if (part.scrollHeight > part.clientHeight + 1 || box.bottom > end + 1 || isHidden) say(part.textContent);
+            const isSaid = part.matches('.asks') || !lane.querySelector('.asks, .doing');
+            const isCut = part.matches('.does, .asks') && part.scrollHeight > part.clientHeight + 1;
+            if (isCut || box.bottom > end + 1 || isSaid && !part.checkVisibility()) say(part.textContent);
         }
         const word = document.createRange();
         word.selectNodeContents(lane.querySelector('.word span'));
         if (lane.classList.contains('short') && word.getClientRects().length > 1) say('its word is broken');
+        // *abort* has to stay where it is when *start* goes: whoever taps *start* twice means no abort.
+        const last = [...lane.querySelectorAll('.acts button')].at(-1)?.getBoundingClientRect();
+        if (last && last.right < lane.querySelector('header').getBoundingClientRect().right - 1) say('its last button is not at the end');
         const buttons = [...lane.querySelectorAll('button')].map(button => button.getBoundingClientRect());
         for (const [i, one] of buttons.entries()) for (const other of buttons.slice(i + 1)) {
             const isClear = one.right <= other.left || other.right <= one.left || one.bottom <= other.top || other.bottom <= one.top;
@@ -71,7 +75,7 @@ fn what_to_do_is_shown_whole_on_every_screen_and_in_every_language() {
             "document.querySelector('#lane-3.error .asks') && document.querySelector('#lane-2.fail')
                 && document.querySelector('#lane-6.waiting') && true",
         );
-        for size in [(1920, 1080), (1280, 800), (360, 740)] {
+        for size in [(1920, 1080), (1280, 800), (800, 450), (360, 740)] {
             for (language, asked) in [
                 ("en", "Start ser2net or halfrow serve there, and check the port"),
                 ("de", "Bei der Platine ser2net oder halfrow serve starten"),
