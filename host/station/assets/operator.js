@@ -16,7 +16,9 @@ const PATIENT = 10000;
 const shown = new Map();
 // The lane that the next scan is for, until when, and what ends it.
 let armed = "", until = 0, ending;
-let sent = 0, answered = 0, queue = Promise.resolve(), todayIsStale = false, noticed = "";
+let sent = 0, answered = 0, queue = Promise.resolve(), todayIsStale = false;
+// The hook of each lane that failed last.
+const notices = new Map();
 
 // Acts are sent one after another, so that a scan is for the lane whose barcode was scanned just before. Each names the last beat
 // heard when it was made: the station refuses what arrives late, because another board may be there by then.
@@ -101,20 +103,20 @@ function lane(event, isNews) {
   shown.set(event.lane, shows);
   // A board that comes or goes changes what can be done, but there is nothing new to say.
   if (isAsBefore) return;
-  if (noticed === event.lane) put("notice", noticed = "");
+  if (notices.delete(event.lane)) notice();
   if (!isNews) return;
   put("said", event.said);
   play(event.state);
   todayIsStale ||= Boolean(event.verdict);
 }
 
+const notice = () => put("notice", [...notices.values()].join("\n"));
+
 // A failed hook is no answer to a scan.
 function hook({ lane, serial, said }) {
-  noticed = lane;
   // By now another board may be in the lane.
   const unit = serial ? `, ${serial}` : "";
-  put("notice", `${by("notice").dataset.lane} ${lane}${unit}: ${said}`);
-  play("ERROR");
+  notices.set(lane, `${by("notice").dataset.lane} ${lane}${unit}: ${said}`);
 }
 
 async function today() {
@@ -125,11 +127,18 @@ async function today() {
 }
 
 const HEAR = {
-  snapshot: ({ lanes }) => { lanes.forEach((one) => lane(one, false)); todayIsStale = true; today(); },
+  snapshot: ({ lanes, hooks }) => {
+    lanes.forEach((one) => lane(one, false));
+    notices.clear();
+    hooks.forEach(hook);
+    notice();
+    todayIsStale = true;
+    today();
+  },
   lane: (one) => lane(one, true),
   doing: progress,
   scan: () => {},
-  hook,
+  hook: (one) => { hook(one); notice(); play("ERROR"); },
   beat: ({ clock }) => {
     // After midnight another day is counted.
     todayIsStale ||= clock < by("clock")?.textContent;

@@ -13,7 +13,7 @@ use tokio::sync::{broadcast, oneshot};
 
 use crate::clock;
 use crate::engine::{Engine, LaneState, News, in_time};
-use crate::floor::ScanError;
+use crate::floor::{ScanError, Word};
 use crate::said::Said;
 
 /// How often there is a beat.
@@ -42,6 +42,13 @@ pub(super) struct Became {
     pub(super) said: Said,
 }
 
+/// A hook that failed, and the unit that it was for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct FailedHook {
+    pub(super) serial: Option<String>,
+    pub(super) said: Said,
+}
+
 /// An event for pages.
 #[derive(Clone, Debug)]
 pub(super) enum EventKind {
@@ -50,11 +57,7 @@ pub(super) enum EventKind {
     Lane(Box<LaneState>),
     Doing(String, Doing),
     Scan(Became),
-    Hook {
-        lane: String,
-        serial: Option<String>,
-        said: Said,
-    },
+    Hook(String, FailedHook),
 }
 
 /// An event with its number. A page that misses a number takes everything anew.
@@ -73,6 +76,8 @@ pub(super) struct Now {
     pub(super) beat: String,
     pub(super) lanes: Vec<LaneState>,
     pub(super) doing: BTreeMap<String, Doing>,
+    /// The last hook of each lane that failed since the lane came to show what it shows.
+    pub(super) failed: BTreeMap<String, FailedHook>,
 }
 
 /// The source of all events for pages.
@@ -166,7 +171,7 @@ impl Live {
             News::Scan { number, scanned, is_taken, lane, said } => {
                 EventKind::Scan(Became { number, scanned, is_taken, lane, said })
             }
-            News::Hook { lane, serial, said, .. } => EventKind::Hook { lane, serial, said },
+            News::Hook { lane, serial, said, .. } => EventKind::Hook(lane, FailedHook { serial, said }),
         };
         let answered = if let EventKind::Scan(became) = &what { Some(became.clone()) } else { None };
         self.tell(what);
@@ -196,16 +201,27 @@ impl Live {
                     now.doing.remove(&state.lane);
                 }
                 if let Some(known) = now.lanes.iter_mut().find(|known| known.lane == state.lane) {
+                    let is_other = shows(known) != shows(state);
                     known.clone_from(state);
+                    if is_other {
+                        now.failed.remove(&state.lane);
+                    }
                 }
             }
             EventKind::Doing(lane, doing) => drop(now.doing.insert(lane.clone(), doing.clone())),
-            EventKind::Beat(_) | EventKind::Scan(_) | EventKind::Hook { .. } => {}
+            EventKind::Hook(lane, failed) => drop(now.failed.insert(lane.clone(), failed.clone())),
+            EventKind::Beat(_) | EventKind::Scan(_) => {}
         }
         now.id += 1;
         // This fails when no page is open.
         let _ = self.pages.send(Event { id: now.id, what });
     }
+}
+
+/// By what pages tell whether a lane has something else to say.
+fn shows(state: &LaneState) -> (Word, Option<&str>) {
+    let shown = state.shown.as_ref().filter(|_| state.state.is_verdict());
+    (state.state, shown.map(|shown| shown.run.as_str()))
 }
 
 /// Passes the engine's news on until nobody is left to hear them.

@@ -9,12 +9,12 @@ use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
 use axum::response::{IntoResponse as _, Response};
 use futures_util::stream;
 use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
 use tokio::sync::broadcast::Receiver;
 
 use super::lane::LaneEvent;
 use crate::clock;
-use crate::web::live::{Became, Event, EventKind, Live, Now};
+use crate::web::live::{Became, Event, EventKind, FailedHook, Live, Now};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -61,7 +61,8 @@ async fn next(
 fn snapshot(mark: &str, visit: &Visit, now: &Now) -> String {
     let event = |state| LaneEvent::new(visit, state, now.doing.get(&state.lane));
     let lanes: Vec<_> = now.lanes.iter().map(event).collect();
-    event_text(now.id, "snapshot", &json!({ "mark": mark, "beat": now.beat, "lanes": lanes }))
+    let hooks: Vec<_> = now.failed.iter().map(|(lane, failed)| hook(visit, lane, failed)).collect();
+    event_text(now.id, "snapshot", &json!({ "mark": mark, "beat": now.beat, "lanes": lanes, "hooks": hooks }))
 }
 
 fn news(live: &Live, visit: &Visit, told: &Event) -> String {
@@ -84,11 +85,13 @@ fn news(live: &Live, visit: &Visit, told: &Event) -> String {
         EventKind::Scan(Became { is_taken, lane, .. }) => {
             event_text(id, "scan", &json!({ "is_taken": is_taken, "lane": lane }))
         }
-        EventKind::Hook { lane, serial, said } => {
-            let said = visit.words.tell(said).text;
-            event_text(id, "hook", &json!({ "lane": lane, "serial": serial, "said": said }))
-        }
+        EventKind::Hook(lane, failed) => event_text(id, "hook", &hook(visit, lane, failed)),
     }
+}
+
+/// A hook that failed.
+fn hook(visit: &Visit, lane: &str, FailedHook { serial, said }: &FailedHook) -> Value {
+    json!({ "lane": lane, "serial": serial, "said": visit.words.tell(said).text })
 }
 
 fn event_text(id: u64, name: &str, data: &impl Serialize) -> String {

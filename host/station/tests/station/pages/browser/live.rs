@@ -215,13 +215,33 @@ fn a_verdict_is_told_once() {
 
 /// The hook is killed long after its verdict, and by then another board may be in the lane.
 #[test]
-fn a_hook_that_failed_is_told_with_its_unit() {
+fn each_hook_that_failed_is_told_with_its_unit_until_its_lane_has_something_else_to_say() {
     let more = "[web]\nlisten = \"127.0.0.1:0\"\n[[on-pass]]\nprogram = \"false\"";
-    let station = Station::with(1, more);
+    let station = Station::with(2, more);
     let serving = station.serve();
     let mut page = Chromium::live(&serving);
-    page.wait("document.querySelector('.lane.ready') !== null");
-    page.scan(SERIALS[0], "Enter", Duration::ZERO);
-    let of_unit = format!("Lane 1, {}: the hook false failed", SERIALS[0]);
-    page.wait(&format!("document.getElementById('notice').textContent.startsWith('{of_unit}')"));
+    let scan = |page: &mut Chromium, lane: &str, serial: &str| {
+        page.wait(&format!("document.querySelector('#lane-{lane}.ready, #lane-{lane}.pass') !== null"));
+        page.scan(&format!("HR:LANE:{lane}"), "Enter", Duration::ZERO);
+        page.scan(serial, "Enter", Duration::ZERO);
+    };
+    let told = |units: &[&str]| {
+        let told: Vec<_> = units.iter().map(|unit| format!("Lane {unit}: the hook false failed")).collect();
+        let lines = "document.getElementById('notice').textContent.split('\\n').filter(Boolean)";
+        format!(
+            "(told => {lines}.length === told.length && told.every(of => {lines}.some(line => line.startsWith(of))))({})",
+            json!(told)
+        )
+    };
+    let units = [format!("1, {}", SERIALS[0]), format!("2, {}", SERIALS[1])];
+    scan(&mut page, "1", SERIALS[0]);
+    page.wait(&told(&[&units[0]]));
+    scan(&mut page, "2", SERIALS[1]);
+    page.wait(&told(&[&units[0], &units[1]]));
+    page.go(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    page.wait(&told(&[&units[0], &units[1]]));
+    let again = format!("1, {}", SERIALS[2]);
+    scan(&mut page, "1", SERIALS[2]);
+    page.wait(&told(&[&again, &units[1]]));
 }
