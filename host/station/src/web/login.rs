@@ -34,14 +34,21 @@ pub(super) fn routes() -> Vec<Route> {
 }
 
 async fn page(visit: Visit) -> Response {
-    Page { here: Here::Elsewhere, title: visit.say("login.title"), head: html! {}, content: form(&visit) }
-        .answer(&visit)
+    Page {
+        here: Here::Elsewhere,
+        title: visit.say("login.title"),
+        head: html! {},
+        content: form(&visit, None),
+    }
+    .answer(&visit)
 }
 
-fn form(visit: &Visit) -> Markup {
+/// The form, below why the last login was refused.
+fn form(visit: &Visit, refused: Option<&str>) -> Markup {
     html! {
         section.login {
             h1 { (visit.say("login.title")) }
+            @if let Some(refused) = refused { p.refused role="alert" { (refused) } }
             form method="post" action="/login" autocomplete="off" {
                 input type="hidden" name="csrf" value=(visit.csrf);
                 label { (visit.say("login.badge")) input type="password" name="badge" required autofocus maxlength="200"; }
@@ -68,8 +75,12 @@ async fn log_in(
 ) -> Result<Response, Trouble> {
     let badge = app.settings().scanner.label(&badge).map(str::to_owned).unwrap_or(badge);
     let known = identified(&app, &visit, Claimant::Stranger(peer), (badge, password)).await?;
-    let refused = || Trouble::new(&visit, StatusCode::FORBIDDEN, visit.say("login.refused"));
-    let cookie = logged_in(&app, &visit, known.ok_or_else(refused)?).await?;
+    let Some(known) = known else {
+        let (title, content) = (visit.say("login.title"), form(&visit, Some(visit.say("login.refused"))));
+        let page = Page { here: Here::Elsewhere, title, head: html! {}, content };
+        return Ok(page.with_status(&visit, StatusCode::FORBIDDEN));
+    };
+    let cookie = logged_in(&app, &visit, known).await?;
     Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
 }
 
