@@ -10,6 +10,7 @@ const by = (id) => document.getElementById(id);
 const put = (id, text) => { if (by(id)) by(id).textContent = text; };
 const UNSENT = { is_taken: false, said: station.unsent };
 const UNPRESSED = { is_taken: false, said: station.unpressed };
+const LEFT = "left";
 // In milliseconds: longer than the station accepts anything after the beat that it names.
 const PATIENT = 10000;
 // What each lane showed last.
@@ -32,12 +33,21 @@ function post(path, fields, show, unsent) {
     try {
       const answer = await fetch(path, { method: "POST", body, signal, headers: { accept: "application/json" } });
       // The user of the page is not logged in any more.
-      if (answer.status === 401 && "known" in station) return location.reload();
-      show(await answer.json());
+      if (answer.status === 401 && "known" in station) return leave(unsent);
+      const became = await answer.json();
+      // Somebody else is logged in.
+      if (became.is_stale) return leave(unsent);
+      show(became);
     } catch {
       show(unsent);
     }
   });
+}
+
+// The page comes anew, and says then that this was not taken.
+function leave(unsent) {
+  sessionStorage.setItem(LEFT, JSON.stringify([Date.now(), unsent.said]));
+  location.reload();
 }
 
 // A page that is not live takes nothing. The reason may be that the session is over; then the page is loaded anew to log in.
@@ -166,6 +176,9 @@ function typing(on) {
 }
 
 document.documentElement.classList.add("scripted");
+const [leftAt, left] = JSON.parse(sessionStorage.getItem(LEFT) ?? "[]");
+sessionStorage.removeItem(LEFT);
+if (left && Date.now() - leftAt < PATIENT) answer({ is_taken: false, said: left });
 addEventListener("click", ({ target }) => {
   const name = target.closest("[data-arm]")?.dataset.arm;
   if (name && by("hand")) arms(name === armed && !isOver() ? "" : name);

@@ -196,7 +196,7 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
     if app.is_ending() {
         return Err(refused(visit, StatusCode::SERVICE_UNAVAILABLE, visit.say("trouble.ending")));
     }
-    let unmarked = || refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.mark"));
+    let unmarked = || Box::new(Trouble::stale(visit).into_response());
     if visit.is_new {
         return Err(unmarked());
     }

@@ -24,17 +24,25 @@ pub(super) struct Trouble {
     status: StatusCode,
     visit: Box<Visit>,
     told: Sentence,
+    /// Whether the page that asked has to be loaded anew first.
+    is_stale: bool,
 }
 
 impl Trouble {
     /// What is wrong and what to do, with its status.
     pub(super) fn new(visit: &Visit, status: StatusCode, said: impl Into<String>) -> Self {
-        Self { status, visit: Box::new(visit.clone()), told: Sentence { text: said.into(), foreign: None } }
+        let told = Sentence { text: said.into(), foreign: None };
+        Self { status, visit: Box::new(visit.clone()), told, is_stale: false }
+    }
+
+    /// The form is not for whoever sends it.
+    pub(super) fn stale(visit: &Visit) -> Self {
+        Self { is_stale: true, ..Self::new(visit, StatusCode::FORBIDDEN, visit.say("trouble.mark")) }
     }
 
     /// What has a code, in the visitor's language.
     pub(super) fn telling(visit: &Visit, status: StatusCode, said: &Said) -> Self {
-        Self { status, visit: Box::new(visit.clone()), told: visit.words.tell(said) }
+        Self { status, visit: Box::new(visit.clone()), told: visit.words.tell(said), is_stale: false }
     }
 
     /// The visitor may not do this.
@@ -89,9 +97,9 @@ impl Trouble {
 
 impl IntoResponse for Trouble {
     fn into_response(self) -> Response {
-        let Self { status, visit, told } = self;
+        let Self { status, visit, told, is_stale } = self;
         if visit.is_script {
-            let text = json!({ "is_taken": false, "said": told.text }).to_string();
+            let text = json!({ "is_taken": false, "said": told.text, "is_stale": is_stale }).to_string();
             return (status, [(CONTENT_TYPE, "application/json")], text).into_response();
         }
         let content =

@@ -25,7 +25,7 @@ const UNBUFFERED: HeaderName = HeaderName::from_static("x-accel-buffering");
 /// Everything as it is, then what changes.
 pub(super) async fn events(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
     let (now, told) = app.lanes(&visit)?.live.follow();
-    let first = snapshot(app.mark(), &visit, &now);
+    let first = snapshot(&super::mark(&app, &visit), &visit, &now);
     let news = stream::unfold((Some(first), Follower { app, visit, told }), |(first, of)| next(first, of));
     let headers = [(CONTENT_TYPE, "text/event-stream"), (CACHE_CONTROL, "no-store"), (UNBUFFERED, "no")];
     Ok((headers, Body::from_stream(news)).into_response())
@@ -39,7 +39,7 @@ struct Follower {
 }
 
 /// The next event. The stream ends for a page that lags too far behind, which then connects anew, and for one whose user has
-/// logged out.
+/// logged out or is another now.
 async fn next(
     first: Option<String>,
     mut of: Follower,
@@ -48,13 +48,28 @@ async fn next(
         Some(first) => first,
         None => {
             let told = of.told.recv().await.ok()?;
-            if matches!(told.what, EventKind::Beat(_)) && !of.app.access().is_open() {
-                of.app.user(&of.visit, Some(of.visit.session.clone()), false).await.ok()?.ok()??;
+            if matches!(told.what, EventKind::Beat(_)) && !is_still(&of.app, &of.visit).await {
+                return None;
             }
             news(&of.app.lanes(&of.visit).ok()?.live, &of.visit, &told)
         }
     };
     Some((Ok(text), (None, of)))
+}
+
+/// Whether the visitor is still who they were when they began to follow.
+async fn is_still(app: &App, visit: &Visit) -> bool {
+    let is_open = app.access().is_open();
+    // A machine, which has no session, may go on to look where everybody may.
+    if is_open && visit.session.is_empty() {
+        return true;
+    }
+    match app.user(visit, Some(visit.session.clone()), false).await {
+        Ok(Ok(user)) => user == visit.user,
+        // While the people cannot be read, whoever is logged in stays so.
+        Ok(Err(_)) => is_open,
+        Err(_) => false,
+    }
 }
 
 /// Everything, with the mark of the page that it is for.

@@ -7,6 +7,14 @@ mod page;
 mod shapes;
 
 use super::routes::{Route, Who, act, look};
+use super::state::App;
+use super::visit::Visit;
+
+/// By this an open page finds out whether it still fits the station and whoever is logged in.
+fn mark(app: &App, visit: &Visit) -> String {
+    let user = visit.user.as_ref().map(|user| format!(" {:?} {}", user.who, user.name));
+    format!("{}{}", app.mark(), user.unwrap_or_default())
+}
 
 pub(super) fn routes() -> Vec<Route> {
     vec![

@@ -40,7 +40,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Resp
         script type="module" src="/assets/operator.js" {}
     };
     let content = html! {
-        section #station data-csrf=(visit.csrf) data-mark=(app.mark()) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
+        section #station data-csrf=(visit.csrf) data-mark=(super::mark(&app, &visit)) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
             data-unsent=(visit.say("scan.unsent")) data-unpressed=(visit.say("lane.unsent")) data-undrawn=(visit.say("live.undrawn"))
             data-chosen=(CHOSEN.as_millis()) data-over=(visit.say("scan.over"))
             data-known[visit.user.is_some()] {

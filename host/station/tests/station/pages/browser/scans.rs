@@ -165,6 +165,35 @@ fn a_scanner_is_enough_to_log_in_and_to_log_in_again() {
     assert_eq!(station.query("SELECT operator_id FROM run"), ["Weber"]);
 }
 
+/// As in another tab of the same browser.
+#[test]
+fn a_page_shows_who_is_logged_in_and_says_what_was_not_taken_because_it_is_somebody_else() {
+    let station = Station::with(1, "[web]\nlisten = \"127.0.0.1:0\"\n[access]\nusers = \"users.toml\"");
+    assert!(station.user(&["add", "Weber"], "A-0017\n").status.success());
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    let who = |name: &str| {
+        let live = "document.getElementById('lamp')?.textContent === 'live'";
+        format!("document.querySelector('.top .who')?.textContent.includes('{name}') && {live}")
+    };
+    let elsewhere = |page: &mut Chromium, path: &str, badge: &str| {
+        let fields = format!("{{csrf: document.getElementById('station').dataset.csrf, badge: '{badge}'}}");
+        page.evaluate(&format!(
+            "fetch('{path}', {{method: 'POST', body: new URLSearchParams({fields})}}).then(() => true)"
+        ));
+    };
+    page.scan("A-0017", "Enter", Duration::ZERO);
+    page.wait(&who("Weber"));
+    elsewhere(&mut page, "/logout", "");
+    page.wait(&who("Log in"));
+    elsewhere(&mut page, "/login", "A-0017");
+    page.scan(&serial(0), "Enter", Duration::ZERO);
+    page.wait(&who("Weber"));
+    page.wait("document.getElementById('answer').textContent.startsWith('The scan did not arrive')");
+    page.scan(&serial(0), "Enter", Duration::ZERO);
+    page.wait("document.querySelector('.lane.pass') !== null");
+}
+
 #[test]
 fn half_scans_and_doubled_ones_are_refused_and_press_nothing() {
     let station = Station::private(1);
