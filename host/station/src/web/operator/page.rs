@@ -51,7 +51,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Resp
             // What is typed stays when the lanes are loaded anew, because they are in a page of their own.
             noscript { iframe src="/still" title=(visit.say("nav.lanes")) {} }
             (floor(&visit, &now))
-            footer #today data-changes[app.settings().plant.is_some()] { (today) }
+            footer #today data-changes[app.settings().sink_names().next().is_some()] { (today) }
             div #said .heard role="log" aria-live="assertive" {}
         }
     };
@@ -164,12 +164,17 @@ async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
     let wanted = Wanted { period, ..Wanted::default() };
     let look = move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.unsent()?));
     let (counted, unsent) = app.look(visit, look).await?;
-    let at_plant = unsent.iter().filter(|unsent| unsent.sink == SINK_OF_PLANT);
-    let entries: u32 = at_plant.map(|unsent| unsent.results).sum();
+    let has_plant = app.settings().plant.is_some();
+    let counts = unsent.iter().filter(|unsent| !has_plant || unsent.sink == SINK_OF_PLANT);
+    let entries: u32 = counts.map(|unsent| unsent.results).sum();
+    let number = entries.to_string();
+    let left = [("entries", number.as_str())];
     Ok(html! {
         (summed(visit, &counted))
-        @if app.settings().plant.is_some() {
-            " · " a href="/outbox" { (visit.words.fill("today.unsent", &[("entries", &entries.to_string())])) }
+        @if has_plant || entries > 0 {
+            " · " a href="/outbox" {
+                @if has_plant { (visit.words.fill("today.unsent", &left)) } @else { (visit.words.fill("today.waiting", &left)) }
+            }
         }
     })
 }

@@ -64,6 +64,18 @@ fn what_waits_at_two_sinks_is_tried_again_where_the_engineer_says() {
     assert_eq!(told, [format!("{run} at share: looked at")]);
 }
 
+/// A screen on a line has no address bar.
+#[test]
+fn the_page_leads_to_what_a_sink_does_not_have() {
+    let sink = "[[sink]]\nname = \"share\"\nfolder = \"nowhere\"\nformat = \"record\"";
+    let station = Station::with(1, &format!("[web]\nlisten = \"127.0.0.1:0\"\n{sink}"));
+    let serving = station.serve();
+    let here = serving.here();
+    assert!(!here.get("/").send().text().contains("/outbox"), "nothing is unsent");
+    here.post("/scan", &[("text", SERIALS[0])]).until_taken();
+    here.get("/today").until("<a href=\"/outbox\">still to be sent: 1</a>");
+}
+
 #[test]
 fn nobody_is_told_to_log_in_where_nobody_can() {
     let station = Station::private(1);
