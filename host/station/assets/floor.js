@@ -17,7 +17,8 @@ export function draw(event) {
   const made = new DOMParser().parseFromString(event.html, "text/html").body.firstElementChild;
   made.classList.toggle("armed", isArmed);
   old.replaceWith(made);
-  if (focused) document.getElementById(focused)?.focus();
+  // Whoever pressed a button that is gone stays in its lane.
+  if (focused) (document.getElementById(focused) ?? made.querySelector(".name"))?.focus({ preventScroll: true });
   return true;
 }
 

@@ -133,7 +133,10 @@ async function today() {
   if (!todayIsStale) return;
   todayIsStale = false;
   const counted = await fetch("/today").catch(() => undefined);
-  if (counted?.ok) by("today").innerHTML = await counted.text();
+  if (!counted?.ok) return;
+  const footer = by("today"), isFocused = footer.contains(document.activeElement);
+  footer.innerHTML = await counted.text();
+  if (isFocused) footer.querySelector("a")?.focus({ preventScroll: true });
 }
 
 const HEAR = {

@@ -56,7 +56,7 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
             data-run=[shown.map(|shown| &shown.run)] data-record=[shown.map(|shown| &shown.record_sha256)] {
             header {
                 h2 id={ "name-" (state.lane) } aria-label=(visit.words.fill("lane.name", &[("lane", &state.lane)])) {
-                    button.name.(length(&state.lane)) type="button" data-arm=(state.lane) aria-pressed="false"
+                    button.name.(length(&state.lane)) id={ "arm-" (state.lane) } type="button" data-arm=(state.lane) aria-pressed="false"
                         aria-label=(visit.words.fill("lane.arm", &[("lane", &state.lane)])) {
                         (state.lane)
                     }
@@ -65,8 +65,8 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
                 @if let Some(shown) = shown { (saved(visit, shown)) }
             }
             p.word { (shape(state.state)) span { (word) } }
-            @if let Some(last) = &state.last { p.last { (of_before(visit, last)) } }
-            @else { p.serial { (serial(state.serial.as_deref().unwrap_or_default(), shown)) } }
+            @if let Some(last) = &state.last { p.last { (of_before(visit, &state.lane, last)) } }
+            @else { p.serial { (serial(state, shown)) } }
             (says(visit, state))
             @if state.state == Word::Running { (progress(visit, &state.lane, doing)) }
         }
@@ -74,19 +74,20 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
 }
 
 /// The serial number; after a run it is a link to all that was found.
-fn serial(serial: &str, shown: Option<&Shown>) -> Markup {
+fn serial(state: &LaneState, shown: Option<&Shown>) -> Markup {
+    let serial = state.serial.as_deref().unwrap_or_default();
     html! {
         @match shown {
-            Some(shown) => { a href={ "/runs/" (shown.run) } { (serial) } }
+            Some(shown) => { a id={ "run-" (state.lane) } href={ "/runs/" (shown.run) } { (serial) } }
             None => { (serial) }
         }
     }
 }
 
 /// The verdict of the board before the one that is in the lane.
-fn of_before(visit: &Visit, last: &Shown) -> Markup {
+fn of_before(visit: &Visit, lane: &str, last: &Shown) -> Markup {
     let values = [("state", said(visit, last.verdict.into())), ("serial", &last.serial)];
-    html! { a href={ "/runs/" (last.run) } { (visit.words.fill("lane.last", &values)) } }
+    html! { a id={ "last-" (lane) } href={ "/runs/" (last.run) } { (visit.words.fill("lane.last", &values)) } }
 }
 
 /// The class of the style sheet for how large a word or a name can be.

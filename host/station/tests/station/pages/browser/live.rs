@@ -202,15 +202,16 @@ fn a_verdict_is_told_once() {
             "(() => {{
                 document.getElementById('said').textContent = '';
                 const [lane, before] = [document.getElementById('lane-1'), window.tones];
+                lane.querySelector('.serial a').focus();
                 const data = JSON.stringify({{...JSON.parse(window.passed), {run}}});
                 source.dispatchEvent(new MessageEvent('lane', {{data, lastEventId: `${{window.last + 1}}`}}));
                 const isDrawn = document.getElementById('lane-1') !== lane;
-                return [isDrawn, window.tones - before, document.getElementById('said').textContent !== ''];
+                return [isDrawn, window.tones - before, document.getElementById('said').textContent !== '', document.activeElement.id];
             }})()"
         )
     };
-    assert_eq!(page.evaluate(&again("")), json!([true, 0, false]));
-    assert_eq!(page.evaluate(&again("run: 'another'")), json!([true, 2, true]), "the control");
+    assert_eq!(page.evaluate(&again("")), json!([true, 0, false, "run-1"]));
+    assert_eq!(page.evaluate(&again("run: 'another'")), json!([true, 2, true, "run-1"]), "the control");
 }
 
 /// The hook is killed long after its verdict, and by then another board may be in the lane.
