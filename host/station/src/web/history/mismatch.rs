@@ -14,14 +14,14 @@ pub(in crate::web) fn table<'a>(visit: &Visit, mismatches: impl IntoIterator<Ite
         @if rows.peek().is_some() {
             h2 { (visit.say("mismatch.title")) }
             p.soft { (visit.say("mismatch.about")) }
-            table.bindings {
+            div.wide tabindex="0" { table.bindings {
                 thead { tr {
                     th { (visit.say("nav.station")) } th { (visit.say("history.device")) }
                     th { (visit.say("mismatch.judged")) } th { (visit.say("history.last")) }
                     th { (visit.say("mismatch.bound")) }
                 } }
                 tbody { @for one in rows { (row(visit, one)) } }
-            }
+            } }
         }
     }
 }

@@ -100,7 +100,7 @@ fn devices(visit: &Visit, bindings: &[Binding]) -> Markup {
     html! {
         @if !bindings.is_empty() {
             h2 { (visit.say("history.devices")) }
-            table.bindings {
+            div.wide tabindex="0" { table.bindings {
                 thead { tr {
                     th { (visit.say("history.device")) } th { (visit.say("history.from")) }
                     th { (visit.say("history.to")) } th { (visit.say("history.operator")) }
@@ -113,7 +113,7 @@ fn devices(visit: &Visit, bindings: &[Binding]) -> Markup {
                     td { (show::said(&one.operator)) }
                     td { (show::said(&one.reason)) }
                 } } }
-            }
+            } }
         }
     }
 }

@@ -174,7 +174,7 @@ fn table(visit: &Visit, by: By, lines: &[Yield]) -> Markup {
             thead { tr {
                 th { (of) } th.number { (visit.say("yield.units")) }
                 th { (visit.say("yield.first")) } th { (visit.say("yield.last")) }
-                th.number { (visit.say("yield.flipped")) } th.number { (visit.say("history.waived")) }
+                th.number { (visit.say("yield.flipped")) } th.number { (visit.say("yield.waived")) }
                 th.number { (visit.say("history.runs")) } th { (visit.say("yield.errors")) }
                 th.number { (visit.say("yield.crashes")) }
             } }
@@ -225,13 +225,13 @@ fn flipped(visit: &Visit, flips: &[Flip]) -> Markup {
         h2 { (visit.words.fill("yield.flips", &[("units", &flips.len().to_string())])) }
         @if flips.is_empty() { p.soft { (visit.say("yield.no_flips")) } } @else {
             p.soft { (visit.say("yield.flips_about")) }
-            table.flips {
+            div.wide tabindex="0" { table.flips {
                 thead { tr {
                     th { (visit.say("history.serial")) } th { (visit.say("history.plan")) }
                     th { "FAIL" } th { "PASS" } th.number { (visit.say("yield.judgements")) }
                 } }
                 tbody { @for flip in flips.iter().take(MOST_FLIPS) { (flip_row(flip)) } }
-            }
+            } }
             @if flips.len() > MOST_FLIPS { p.soft { (visit.say("yield.narrow")) } }
         }
     }

@@ -94,6 +94,7 @@ fn words_are_large_and_nothing_lies_upon_another() {
 fn what_was_found_can_be_read_on_a_phone() {
     let station =
         Station::private(1).where_instead("station.toml", "mock,serial=1", "mock,serial=1,fault=stuck-data");
+    let station = station.where_instead("plan.toml", "not-checked", "if-present");
     let serving = station.serve();
     let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
     page.wait("document.querySelector('.lane.ready') !== null && document.getElementById('lamp').textContent === 'live'");
@@ -111,6 +112,23 @@ fn what_was_found_can_be_read_on_a_phone() {
     );
     assert!(narrowest.as_f64().unwrap() > 200.0, "{narrowest} px of 400");
     assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
+    for (path, table, widths) in [
+        (format!("/unit?serial={}", SERIALS[0]), ".bindings", &[390][..]),
+        ("/history".to_owned(), ".runs", &[390, 721, 800, 1280]),
+    ] {
+        page.go(&format!("http://127.0.0.1:{}{path}", serving.port));
+        page.wait(&format!(
+            "document.readyState === 'complete' && document.querySelector('{table}') !== null"
+        ));
+        // A headline may name a serial number that has no place to break.
+        page.evaluate("document.querySelectorAll('.headline').forEach(one => one.append('W'.repeat(200)))");
+        for width in widths {
+            let size = json!({ "width": width, "height": 844, "deviceScaleFactor": 1, "mobile": false });
+            page.call("Emulation.setDeviceMetricsOverride", size);
+            let wide = page.evaluate("document.documentElement.scrollWidth > innerWidth");
+            assert_eq!(wide, json!(false), "{path} at {width}");
+        }
+    }
 }
 
 /// Parts of a lane, in every state, that overlap each other or extend beyond the lane.
