@@ -47,3 +47,12 @@ fn of_many_that_wait_for_a_person_the_first_hundred_are_shown_with_their_number(
         assert_eq!(json["unsent"][0]["dead"], many);
     }
 }
+
+#[test]
+fn whoever_has_all_sent_again_is_told_of_what_waits_for_a_person() {
+    let folder = refused(2).closed();
+    let sink = "[[sink]]\nname = \"mes\"\nfolder = \"mes\"";
+    let again = ["outbox", "again", "mes", "--reason", "lost", "--operator", "engel"];
+    let rest = "`halfrow-station outbox release --sink mes` has 2 more tried, which wait for a person";
+    assert_eq!(did(folder.path(), sink, &again).said, format!("0 of mes are sent again; {rest}\n"));
+}

@@ -174,9 +174,6 @@ fn what_a_server_answers_says_who_waits_for_whom() {
     let listed = did(folder.path(), &sink, &["outbox", "list"]);
     assert!(listed.said.contains("(the serial number is unknown here)"), "{listed:?}");
     server.answers("204 ");
-    let again = ["outbox", "again", "mes", "--reason", "lost", "--operator", "engel"];
-    let told = "0 of mes are sent again; `halfrow-station outbox release --sink mes` has 8 more tried, which wait for a person\n";
-    assert_eq!(did(folder.path(), &sink, &again).said, told);
     let release = ["outbox", "release", "--sink", "mes", "--reason", "known now", "--operator", "engel"];
     assert_eq!(did(folder.path(), &sink, &release).said, "8 of mes are tried again\n");
     // The release has its line in the audit, and so has the command.
