@@ -40,3 +40,13 @@ pub fn connect(options: &[(&str, &str)]) -> Result<Pipe<Board>, ConnectError> {
 pub fn board_fault(options: &[(&str, &str)]) -> Result<Option<BoardFault>, TargetError> {
     PipeSetup::with_board(options, &mut Options::default()).map(|(_, fault)| fault)
 }
+
+/// The build that [`connect`] would make for these options.
+///
+/// # Errors
+/// [`TargetError`] as there. Whether the build can exist is not checked.
+pub fn board_build(options: &[(&str, &str)]) -> Result<Options, TargetError> {
+    let mut build = Options::default();
+    PipeSetup::with_board(options, &mut build)?;
+    Ok(build)
+}

@@ -30,7 +30,7 @@ mod tables;
 
 pub use crate::banks::{OutBanks, RowName, RowOut};
 pub use crate::board::Board;
-pub use crate::connect::{ConnectError, board_fault, connect};
+pub use crate::connect::{ConnectError, board_build, board_fault, connect};
 pub use crate::core::{
     Core, Entering, GridShape, Kernel, Leaving, NODES, Node, RowBinding, RowValues, UNSTRETCHED, Weight,
 };

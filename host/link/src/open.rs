@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use halfrow_mock::{BoardFault, ConnectError};
+use halfrow_mock::{BoardFault, ConnectError, board_build, board_fault};
 use halfrow_pipe::TargetError;
 
 #[cfg(feature = "sim")]
@@ -41,18 +41,19 @@ pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     Ok(Candidate { target: target.to_string(), kind: kind.board, link, reopen })
 }
 
-/// The fault that a `mock` target asks for; none if it asks for none, or for another kind of target.
+/// The fault that a `mock` target asks for, and the build that has it; none if it asks for none, or for another kind of target.
 ///
 /// # Errors
 /// [`OpenError`] when the mock board does not have these options.
-pub fn fault(target: &Target) -> Result<Option<BoardFault>, OpenError> {
+pub fn fault(target: &Target) -> Result<Option<(BoardFault, halfrow_mock::Options)>, OpenError> {
     if target.kind != "mock" {
         return Ok(None);
     }
     let mut options = options_of(target);
     pace(MOCK, target, &mut options)?;
-    halfrow_mock::board_fault(&options)
-        .map_err(|source| wrong_options(MOCK, target, with_keys(source, &[PACE])))
+    let wrong = |source| wrong_options(MOCK, target, with_keys(source, &[PACE]));
+    let Some(fault) = board_fault(&options).map_err(wrong)? else { return Ok(None) };
+    Ok(Some((fault, board_build(&options).map_err(wrong)?)))
 }
 
 pub(crate) fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {

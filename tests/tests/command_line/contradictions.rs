@@ -237,9 +237,13 @@ fn an_option_of_paper_needs_an_item_that_heeds_it() {
 fn a_fault_without_effect_is_refused_with_one_that_has_some() {
     let folder = Folder::new();
     for (fault, sentence) in [
-        ("row-factor,row=16", "there is no row=16 in frames of 16 rows; give one from 0 to 15"),
-        ("lost-row,row=16", "there is no row=16"),
-        ("drifting-table,row=16", "there is no row=16"),
+        ("row-factor,row=16,max-height=16", "there is no row=16 in frames of 16 rows; give one from 0 to 15"),
+        ("lost-row,row=16,max-height=16", "there is no row=16"),
+        ("drifting-table,row=16,max-height=16", "there is no row=16"),
+        // docs/full-speed.md: the tallest frame has one row less than the board takes.
+        ("warm-bit,row=2047", "there is no row=2047 in frames of 2047 rows; give one from 0 to 2046"),
+        // A row has 2048 samples at most.
+        ("stuck-centre,bit=12", "at most 4094, which has no bit=12; give one from 0 to 11, or value=1"),
         ("tap-offset,columns=0", "columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3"),
         (
             "dead-tap,tap=6,taps=five",
@@ -257,7 +261,13 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
         let board = format!("mock,fault={fault}");
         refused(&folder, &small("verify", &["--board", &board, "--frame", "builtin:noise"]), sentence);
     }
-    for fault in ["row-factor,row=15", "drifting-table,after=35", "tap-offset,columns=-1"] {
+    for fault in [
+        "row-factor,row=15",
+        "warm-bit,row=2046,after=0",
+        "drifting-table,after=35",
+        "tap-offset,columns=-1",
+        "stuck-centre,bit=12,value=1",
+    ] {
         let board = format!("mock,fault={fault}");
         let ended = folder.halfrow(small("verify", &["--board", &board, "--frame", "builtin:noise"]));
         assert_eq!(ended.code, Some(1), "{fault}: {}", ended.stdout);
@@ -265,9 +275,12 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
 }
 
 #[test]
-fn a_fault_at_speed_is_refused_where_no_frame_is_made_at_speed() {
+fn a_fault_at_speed_is_refused_where_no_frame_at_speed_is_judged() {
     let folder = Folder::new();
-    for fault in ["slow-path", "warm-bit,after=100000", "late-swap", "hidden-pause"] {
+    // The wire's rules are tried with a few such frames.
+    let tried = small("verify", &["--board", "mock,fault=hidden-pause", "--at-speed", "0"]);
+    assert_eq!(folder.halfrow(tried).code, Some(1));
+    for fault in ["late-swap", "wrong-clock-claim"] {
         let board = format!("mock,fault={fault}");
         let call = small("verify", &["--board", &board, "--at-speed", "0"]);
         refused(
@@ -283,7 +296,7 @@ fn a_fault_at_speed_is_refused_where_no_frame_is_made_at_speed() {
 fn a_fault_of_a_grids_entry_is_held_against_the_grid() {
     let folder = Folder::new();
     let verify = |fault: &str| {
-        let board = format!("mock,fault={fault}");
+        let board = format!("mock,max-height=24,fault={fault}");
         let size = ["--width", "192", "--height", "24", "--radius", "130", "--projection", "exact"];
         let call = ["verify", "-q", "--frame", "builtin:noise", "--board", &board];
         folder.halfrow(call.into_iter().chain(size))

@@ -4,7 +4,11 @@ use super::BoardFault;
 use crate::core::Weight;
 use crate::options::{BurstBuild, OptionError, Options, TapCount};
 
-/// What a board is given with one generation of tables.
+/// Rows of the frames that are streamed for the wire's rules, and of those among them that are as wide as the board takes.
+const OF_RULES: u16 = 4;
+const OF_RULES_WIDE: u16 = 2;
+
+/// What a board is given with one generation of tables, and what it makes besides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Streamed {
     /// Samples of a row.
@@ -15,28 +19,39 @@ pub struct Streamed {
     pub grid: Option<usize>,
     /// Frames, some of them after a CONFIGURE of their own.
     pub frames: usize,
-    /// Whether the board then makes frames of its own.
+    /// Whether the board then makes frames of its own, to be judged at speed.
     pub at_speed: bool,
+    /// Whether the wire's rules are then tried.
+    pub rules: bool,
+    /// Rows of the tallest frame that the board makes of its own, at speed or for the rules; none if it makes none.
+    pub made: Option<usize>,
 }
 
 impl BoardFault {
-    /// Why the fault changes nothing when a board plays the frames of `streamed`, and what would make it take effect; none when
-    /// it may change something.
+    /// Why the fault changes nothing when a board of this `build` plays the frames of `streamed`, and what would make it take
+    /// effect; none when it may change something.
     #[must_use]
-    pub fn without_effect(&self, streamed: &Streamed) -> Option<String> {
+    pub fn without_effect(&self, streamed: &Streamed, build: &Options) -> Option<String> {
         match *self {
+            // The rules have entries of every row written and read.
+            Self::RowFactor { row, hidden: false, .. } if streamed.rules && row < build.max_height => None,
             Self::RowFactor { row, .. } => streamed.lacks_entry(row),
             Self::DriftingTable { after, row, .. } => {
                 streamed.lacks_entry(row).or_else(|| streamed.ends_before(after, row))
             }
             Self::LostRow { row } => streamed.lacks_row(row),
             Self::SpoiltRow { row, column, .. } => {
-                streamed.lacks_row(row).or_else(|| streamed.lacks_column(column?))
+                let of_rules = |rows| streamed.rules && row < rows;
+                let lacks_row = || lacks(row, streamed.height).filter(|_| !of_rules(OF_RULES));
+                let lacks_column = || streamed.lacks_column(column?).filter(|_| !of_rules(OF_RULES_WIDE));
+                lacks_row().or_else(lacks_column)
             }
             Self::WarmBit { row, .. } | Self::HiddenPause { row } => {
-                streamed.lacks_speed().or_else(|| streamed.lacks_row(row))
+                Streamed::lacks_speed(streamed.made.is_some()).or_else(|| streamed.lacks_row(row))
             }
-            Self::SlowPath { .. } | Self::LateSwap | Self::WrongClockClaim => streamed.lacks_speed(),
+            Self::SlowPath { .. } => Streamed::lacks_speed(streamed.made.is_some()),
+            Self::LateSwap | Self::WrongClockClaim => Streamed::lacks_speed(streamed.at_speed),
+            Self::StuckCentre { bit, value: false } => lacks_centre_bit(bit, build.max_width),
             Self::TapOffset { columns: 0 } => {
                 Some("columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3".to_owned())
             }
@@ -82,12 +97,31 @@ impl BoardFault {
     }
 }
 
+fn lacks(row: u16, height: usize) -> Option<String> {
+    let last = height.saturating_sub(1);
+    (usize::from(row) >= height)
+        .then(|| format!("there is no row={row} in frames of {height} rows; give one from 0 to {last}"))
+}
+
+/// A centre is at most in the last column of the widest row.
+fn lacks_centre_bit(bit: u8, max_width: u16) -> Option<String> {
+    let most = (2 * u32::from(max_width)).saturating_sub(2);
+    let last = most.checked_ilog2().unwrap_or(0);
+    (u32::from(bit) > last).then(|| {
+        format!(
+            "twice the centre's column is at most {most}, which has no bit={bit}; give one from 0 to {last}, or value=1"
+        )
+    })
+}
+
 impl Streamed {
+    /// Frames that the board makes of its own may be taller than those that it is given.
     fn lacks_row(&self, row: u16) -> Option<String> {
-        let Self { height, .. } = self;
-        let last = height.saturating_sub(1);
-        (usize::from(row) >= *height)
-            .then(|| format!("there is no row={row} in frames of {height} rows; give one from 0 to {last}"))
+        lacks(row, self.tallest())
+    }
+
+    fn tallest(&self) -> usize {
+        self.height.max(self.made.unwrap_or(0))
     }
 
     fn lacks_column(&self, column: u16) -> Option<String> {
@@ -98,8 +132,8 @@ impl Streamed {
         })
     }
 
-    fn lacks_speed(&self) -> Option<String> {
-        (!self.at_speed).then(|| {
+    fn lacks_speed(has_some: bool) -> Option<String> {
+        (!has_some).then(|| {
             "it strikes in frames that the board makes at full speed, and there are none; ask for some"
                 .to_owned()
         })
@@ -109,7 +143,7 @@ impl Streamed {
     fn lacks_entry(&self, row: u16) -> Option<String> {
         let Some(entries) = self.grid else { return self.lacks_row(row) };
         let last = entries.saturating_sub(1);
-        (usize::from(row) >= entries)
+        (usize::from(row) >= entries.max(self.tallest()))
             .then(|| format!("there is no entry row={row} in a grid of {entries}; give one from 0 to {last}"))
     }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Arg, Args};
 
-use halfrow_mock::Streamed;
+use halfrow_mock::{Options, Streamed};
 use halfrow_program::number::{any, number};
 
 use super::judging::time_limit;
@@ -17,10 +17,10 @@ use crate::failure::Failure;
 use crate::pool::{self, POOL};
 use crate::settings::Settings;
 use crate::signals;
-use halfrow::board::{OpenOptions, RetryLimit, Stop, WhenHeld};
+use halfrow::board::{BoardNature, Capabilities, OpenOptions, RetryLimit, Stop, WhenHeld};
 use halfrow::call::Files;
 use halfrow::link::{self, Candidate, Recording, kinds};
-use halfrow::run::{AtSpeed, Build, JUDGED, Plan};
+use halfrow::run::{AtSpeed, Build, JUDGED, Plan, usual_capabilities};
 use halfrow::target::{BoardKind, Target, TargetError};
 use halfrow::verdict::StoppedBy;
 
@@ -80,7 +80,7 @@ pub(crate) fn check(target: &Target) -> Result<(), Failure> {
 
 /// Refuses a fault of the mock board `target` that has no effect in a run of `plan`.
 pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
-    let fault = link::fault(target).map_err(wrong_board)?;
+    let Some((fault, build)) = link::fault(target).map_err(wrong_board)? else { return Ok(()) };
     let judged = plan
         .schedule(&Build::full(plan.tables.geometry().width()))
         .into_iter()
@@ -90,14 +90,22 @@ pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
     let grid = tables.shape().map(|_| tables.entries().len());
     let (width, height) = (tables.geometry().width(), tables.geometry().height());
     let at_speed = plan.at_speed != AtSpeed::Off;
-    let streamed = Streamed { width, height, grid, frames, at_speed };
-    match fault.and_then(|fault| fault.without_effect(&streamed)) {
+    let (rules, made) = (plan.tries_rules(), plan.tallest_made(&mock_capabilities(&build, plan)));
+    let streamed = Streamed { width, height, grid, frames, at_speed, rules, made };
+    match fault.without_effect(&streamed, &build) {
         None => Ok(()),
         Some(why) => Err(wrong_board(Failure::call(CallError::FaultWithoutEffect {
             target: target.to_string(),
             reason: why.to_string(),
         }))),
     }
+}
+
+/// What the size of frames that a mock board makes depends on.
+fn mock_capabilities(build: &Options, plan: &Plan) -> Capabilities {
+    let usual = usual_capabilities(plan, BoardNature::Mock);
+    let Options { max_width, max_height, .. } = *build;
+    Capabilities { max_width, max_height, ring: build.ring_size(), ..usual }
 }
 
 /// `failure`, attributed to the value of `--board`.

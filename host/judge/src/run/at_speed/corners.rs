@@ -53,6 +53,12 @@ pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generat
     corners
 }
 
+/// Rows of the tallest frame of all corners.
+pub(in crate::run) fn tallest_corner(capabilities: &Capabilities, seed: u64) -> Option<usize> {
+    let made = corners(capabilities, seed).into_iter().flatten();
+    made.map(|made| made.tables.geometry().height()).max()
+}
+
 /// As many low bits of `pattern` as do not exceed `most`.
 pub(in crate::run) fn fit(pattern: usize, most: usize) -> usize {
     let bits = (1..=usize::BITS - most.leading_zeros()).rev();

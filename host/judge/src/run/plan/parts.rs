@@ -7,8 +7,10 @@ use halfrow_model::Geometry;
 use serde::{Deserialize, Serialize};
 
 use super::variations::Build;
-use super::{FrameSource, Plan, ScheduledFrame, Segment};
-use crate::run::at_speed::FEW_AT_SPEED;
+use super::{AtSpeed, FrameSource, Plan, ScheduledFrame, Segment};
+use crate::board::Capabilities;
+use crate::run::at_speed::{FEW_AT_SPEED, known_bursts, tallest_corner};
+use crate::run::rules::tallest_of_rules;
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -204,8 +206,22 @@ impl Plan {
     }
 
     /// Whether the rules are tried; a soak never does.
-    pub(crate) fn tries_rules(&self) -> bool {
+    #[must_use]
+    pub fn tries_rules(&self) -> bool {
         self.at_speed.soak().is_none() && self.amount(Part::Rules) > 0
+    }
+
+    /// Rows of the tallest frame that a board with `capabilities` makes of its own, at speed or for the rules; none if it makes
+    /// none.
+    #[must_use]
+    pub fn tallest_made(&self, capabilities: &Capabilities) -> Option<usize> {
+        let bursts = known_bursts(capabilities).ok()?;
+        let at_speed = self.at_speed != AtSpeed::Off;
+        let has_corners = at_speed && self.at_speed.soak().is_none() && self.amount(Part::Corners) > 0;
+        let usual = at_speed.then(|| self.tables.geometry().height());
+        let corner = has_corners.then(|| tallest_corner(capabilities, self.seed)).flatten();
+        let of_rules = self.tries_rules().then(|| tallest_of_rules(capabilities, bursts.trap));
+        [usual, corner, of_rules].into_iter().flatten().max()
     }
 
     /// How much of `part` is to be judged; all of it when the plan has no selection.

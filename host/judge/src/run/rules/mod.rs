@@ -46,6 +46,7 @@ pub(super) use price::price;
 use quoted::{answer, answers};
 use refusals::Refusals;
 use small::Small;
+pub(super) use trap::tallest_of_rules;
 pub(super) use waiting::MOST_FILLED;
 
 /// The first row factor of the shadow bank.

@@ -11,9 +11,9 @@ use crate::run::at_speed::{CALM, drawn_factors, drawn_kernel};
 use crate::run::plan::variations::Build;
 
 /// Rows of a small frame, if the board takes that many.
-const ROWS: usize = 4;
+pub(super) const ROWS: usize = 4;
 /// Rows of the tables, for tall frames, in which a row must be found.
-const TALL: usize = 20;
+pub(super) const TALL: usize = 20;
 
 /// The frames and tables with which the rules are tried.
 pub(super) struct Small {

@@ -9,7 +9,9 @@ use rand_pcg::Pcg64Mcg;
 use super::bursts::{Awaited, PATIENCE};
 use super::compared::Compared;
 use super::rows::{FRAME, GENERATION};
+use super::small::{ROWS, TALL as TALL_ROWS};
 use super::{Rules, longer};
+use crate::board::Capabilities;
 use crate::reference::correct;
 use crate::result::{CheckName, Rule};
 use crate::run::Generation;
@@ -24,6 +26,22 @@ pub(super) const NOTHING_KEPT: [u8; 1] = [0];
 const MOST_ROWS: usize = 1023;
 /// The generation with which it is made: none of the others that are active in the rules.
 const TALL: u8 = 0xc3;
+
+/// Rows of the tallest frame whose height has every bit set.
+fn rows_of_tallest(capabilities: &Capabilities) -> usize {
+    let most = usize::from(capabilities.max_height).min(MOST_ROWS);
+    (1 << (most + 1).ilog2()) - 1
+}
+
+/// Rows of the tallest frame that a board makes for the rules.
+pub(in crate::run) fn tallest_of_rules(capabilities: &Capabilities, has_trap: bool) -> usize {
+    let small = ROWS.min(capabilities.max_height.into());
+    if has_trap {
+        rows_of_tallest(capabilities).max(TALL_ROWS.min(capabilities.max_height.into()))
+    } else {
+        small
+    }
+}
 
 impl Rules<'_, '_> {
     /// Expects each bit of a signature wrong once, in one row or another.
@@ -108,8 +126,7 @@ impl Rules<'_, '_> {
     /// The same in a frame whose height has every bit set and is at most the greatest, unless two such frames take the
     /// board seconds.
     fn tall_trapped(&mut self) -> Result<(), End> {
-        let most = usize::from(self.capabilities.max_height).min(MOST_ROWS);
-        let rows = (1 << (most + 1).ilog2()) - 1;
+        let rows = rows_of_tallest(&self.capabilities);
         let own = of_height(&self.small.geometry, rows);
         let mut draws = Pcg64Mcg::new(u128::from(self.small.seed) | 1 << 67);
         let Some(tables) = drawn_factors(own, Build::of(&self.capabilities).ring, &mut draws) else {
