@@ -269,7 +269,7 @@ fn a_frame_that_cannot_be_streamed_again_is_said_to_be_seen_at_speed_alone() {
     else {
         panic!("{}", report.headline())
     };
-    assert_eq!(streamed, Streamed::NotTried);
+    assert_eq!(streamed, Streamed::RowLost { row: 0 });
     let places: Vec<_> = report.suspects.iter().map(|suspect| &suspect.defect).collect();
     assert!(matches!(places[..], [Defect::SeenAtSpeed { row: Some(0), samples: 1.., .. }, ..]), "{places:?}");
 }

@@ -75,6 +75,17 @@ fn what_the_streamed_frame_refutes_is_no_suspect() {
     }
 }
 
+/// Only frames at speed have such a row.
+#[test]
+fn a_row_that_is_lost_when_the_frame_is_streamed_is_told() {
+    let report = System::TINY.judge(",fault=lost-row,row=20");
+    let headline = report.headline();
+    assert!(
+        headline.contains("; sent row by row, row 20 of it did not come back; the suspect is"),
+        "{headline}"
+    );
+}
+
 /// The mock flips this bit of the row's first output.
 #[test]
 fn the_row_that_was_kept_is_told_with_its_samples() {

@@ -214,6 +214,11 @@ pub enum Streamed {
     Right,
     /// It came back wrong, too.
     Wrong,
+    /// This row of it did not come back.
+    RowLost {
+        /// Its number.
+        row: u16,
+    },
 }
 
 /// What a board counts of a frame that it made itself.

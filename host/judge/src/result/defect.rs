@@ -260,7 +260,7 @@ pub enum Defect {
         /// Bits of them that do.
         bits: Vec<u32>,
     },
-    /// Frames at the full pixel clock are wrong, and no such frame was sent row by row, so the fault may show at any clock.
+    /// Frames at the full pixel clock are wrong, and no such frame came back row by row, so the fault may show at any clock.
     SeenAtSpeed {
         /// A row in which it was seen.
         row: Option<usize>,

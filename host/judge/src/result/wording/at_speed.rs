@@ -64,7 +64,7 @@ pub(super) fn seen_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     Words {
         part: "timing or logic",
         place: format!("a fault at full speed that may also occur row by row{bits}"),
-        defect: format!("the frame that was wrong at full speed was not sent row by row{kept}"),
+        defect: format!("the frame that was wrong at full speed could not be compared with the same frame sent row by row{kept}"),
         designer: "If streamed frames of this size with these tables are right, check the timing of the datapath at this clock, \
                    and its supply; otherwise look for what depends on size, centre, depth and tables too."
             .to_owned(),
@@ -192,9 +192,10 @@ fn shown(repetition: &Repetition) -> String {
         }
         Repetition::Trapped { frames, row, only_there, streamed, .. } => {
             let streamed = match streamed {
-                Streamed::NotTried => "",
-                Streamed::Right => "; sent row by row, the same frame is right",
-                Streamed::Wrong => "; sent row by row, the same frame is wrong as well",
+                Streamed::NotTried => String::new(),
+                Streamed::Right => "; sent row by row, the same frame is right".to_owned(),
+                Streamed::Wrong => "; sent row by row, the same frame is wrong as well".to_owned(),
+                Streamed::RowLost { row } => format!("; sent row by row, row {row} of it did not come back"),
             };
             let kept = if *only_there { "; the board kept" } else { ", first in" };
             format!("; {}{kept} row {row}{streamed}", wrong_there(*frames, *only_there))

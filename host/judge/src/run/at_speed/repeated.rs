@@ -24,6 +24,7 @@ use crate::result::{
 use crate::run::findings::{During, End};
 use crate::run::frames::kept::as_found;
 use crate::run::plan::Generation;
+use crate::run::sessions::second_look::unasked;
 use crate::run::steps::Run;
 
 /// The least differing samples with which a row can tell one defect from another.
@@ -97,7 +98,7 @@ impl Run<'_> {
             self.make_again(plan, tables, first)
         };
         let again = again.unwrap_or_else(|end| {
-            tracing::warn!("the frame was not made again: {}", end.finding().sentence());
+            tracing::warn!("the frame was not made again: {}", unasked(&end).sentence());
             Repetition::Impossible {}.into()
         });
         let MadeAgain { repetition, mut suspects } = again;
@@ -160,13 +161,17 @@ impl Run<'_> {
         // A soak goes on, and spends no time on rows that a link must carry.
         let is_soak = self.plan.at_speed.soak().is_some();
         let right = seen.evidence.expected.samples();
-        let back = if is_soak { None } else { self.first_rows_streamed(generation, content, right) };
-        let streamed = match &back {
-            None => Streamed::NotTried,
-            Some(back) if back.starts_with(right) => Streamed::Right,
-            Some(_) => Streamed::Wrong,
+        let back = if is_soak {
+            Err(Streamed::NotTried)
+        } else {
+            self.first_rows_streamed(generation, content, right)
         };
-        let wrong = back.filter(|_| streamed == Streamed::Wrong);
+        let streamed = match &back {
+            Err(streamed) => *streamed,
+            Ok(back) if back.starts_with(right) => Streamed::Right,
+            Ok(_) => Streamed::Wrong,
+        };
+        let wrong = back.ok().filter(|_| streamed == Streamed::Wrong);
         let suspects = match wrong.and_then(|back| self.rows_streamed(generation, content, back)) {
             Some(seen) => self.diagnose_rows(&seen, "at speed", content.frame),
             None => self.suspects_of(&seen, content, streamed),
@@ -307,7 +312,7 @@ pub(super) type TrappedRow<'a> = (usize, &'a [u16], &'a [u16]);
 fn at_speed(streamed: Streamed, kept: Option<TrappedRow<'_>>) -> Option<Suspect> {
     let (row, (samples, bits)) = (kept.map(|(row, ..)| row), kept.map(changed).unwrap_or_default());
     let defect = match streamed {
-        Streamed::NotTried => Defect::SeenAtSpeed { row, samples, bits },
+        Streamed::NotTried | Streamed::RowLost { .. } => Defect::SeenAtSpeed { row, samples, bits },
         Streamed::Right => Defect::OnlyAtSpeed { row, samples, bits },
         Streamed::Wrong => return None,
     };

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use halfrow_model::Content;
 
-use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
+use crate::board::{BoardError, NumberedFrame, ReturnedRow, RowTraffic};
 use crate::progress::Progress;
+use crate::result::{Problem, Streamed};
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 
@@ -51,13 +52,13 @@ impl RowTraffic for FirstRows<'_> {
 
 impl Run<'_> {
     /// What comes back of the frame of `content` with the tables of `generation` and the board's present settings: the
-    /// first rows and, unless these are `right`, [`FURTHER`] more; none if they do not come.
+    /// first rows and, unless these are `right`, [`FURTHER`] more; why not, if they do not come.
     pub(super) fn first_rows_streamed(
         &mut self,
         generation: &Generation,
         content: Content,
         right: &[u16],
-    ) -> Option<Vec<u16>> {
+    ) -> Result<Vec<u16>, Streamed> {
         let geometry = generation.tables.geometry();
         let frame = content.frame(geometry, self.plan.phase);
         let wanted = (right.len() + FURTHER * geometry.width()).min(frame.samples().len());
@@ -67,8 +68,14 @@ impl Run<'_> {
         let mut rows = FirstRows { frame, right, samples: vec![0; wanted], came: 0, progress: self.progress };
         // More rows of the frame may be under way after the last wanted one.
         let streamed = self.board.stream(&mut rows).and_then(|()| self.board.drop_rows());
-        let streamed = streamed.inspect_err(|error| tracing::warn!("the frame was not streamed: {error}"));
-        streamed.ok().map(|()| rows.samples)
+        streamed.map(|()| rows.samples).map_err(|error| {
+            // What an error asks for is asked by somebody who does not judge the board yet.
+            tracing::warn!("the frame was not streamed: {}", Problem::of(&error).unasked());
+            match error {
+                BoardError::RowMissing { place, .. } => Streamed::RowLost { row: place.row },
+                _ => Streamed::NotTried,
+            }
+        })
     }
 }
 
