@@ -75,6 +75,21 @@ fn what_the_streamed_frame_refutes_is_no_suspect() {
     }
 }
 
+/// The mock is warm when the rules are tried: after frames at speed, and before the session that follows a burst, in which both
+/// frames of a burst are then wrong, and a rule may be as well.
+#[test]
+fn signatures_alone_are_told_as_what_speed_or_a_broken_rule_makes_wrong() {
+    let report = System::TINY.judge(",fault=warm-bit,after=60");
+    let (headline, technician) = (report.headline(), report.technician().unwrap_or_default());
+    assert_eq!(report.finding.code(), "rule-broken", "{headline}");
+    let told = "it gave another signature for 2 frames, the first is frame 0, and was right in all else (rule: a greeting must";
+    assert!(headline.contains(told), "{headline}");
+    assert!(technician.starts_with("Switch the board off and on, "), "{technician}");
+    let remedy = report.remedy().unwrap_or_default();
+    assert!(remedy.starts_with("Check the timing of the datapath at this clock"), "{remedy}");
+    assert!([technician, remedy].iter().all(|asked| asked.contains(" names the same rule, ")));
+}
+
 /// Only frames at speed have such a row.
 #[test]
 fn a_row_that_is_lost_when_the_frame_is_streamed_is_told() {

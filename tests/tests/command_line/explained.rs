@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use halfrow::result::{
-    BrokenOff, BurstCount, Corner, Counter, Doubt, Finding, NumberedRow, PlacedRow, Problem, RepeatedRow,
-    RowsTried, Rule,
+    Answer, BrokenOff, BurstCount, Corner, Counter, Doubt, Finding, NumberedRow, PlacedRow, Problem,
+    RepeatedRow, RowsTried, Rule,
 };
 use halfrow_tests::program::{Folder, error_sentence, halfrow};
 
@@ -171,6 +171,12 @@ fn what_depends_on_what_was_found_is_said_to_be_the_example_s() {
         Finding::TablesChanged { found: Box::new(timed.clone()) },
         Finding::InCorner { corner, found: Box::new(Finding::CommitCrcWrong {}) },
         with_rule(),
+        Finding::RuleBroken {
+            rule: Rule::NewSession,
+            request: "RECORDS".to_owned(),
+            right: Answer::Burst { ended: true, records: 2 },
+            found: Answer::OtherSignatures { frames: 2, first: 0 },
+        },
         timed,
         Finding::BoardStayedAway { reason: Box::new(reason.clone()), seconds: 1.0 },
         Finding::WrongOverDoubtfulLink {

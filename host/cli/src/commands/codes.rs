@@ -290,6 +290,7 @@ fn depending(example: &Finding) -> Option<Depends> {
         Finding::TablesChanged { .. } | Finding::InCorner { .. } => Depends::Code("what was found"),
         Finding::LatencyWrong(_) => Depends::Both("which rows are late"),
         Finding::MiscountedAtSpeed { .. } => Depends::Both("what is miscounted"),
+        Finding::RuleBroken { .. } => Depends::Both("what was answered"),
         Finding::CounterWrong { .. } => Depends::Remedy("whether a rule was tried"),
         Finding::WrongOverDoubtfulLink { .. } => Depends::Remedy("what the link may have done"),
         Finding::SecondLookBrokenOff(_) => Depends::Remedy("why it broke off"),

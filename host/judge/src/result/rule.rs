@@ -133,6 +133,13 @@ pub enum Answer {
         #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
         differs: Box<[RowPart]>,
     },
+    /// Records in which nothing but signatures is wrong.
+    OtherSignatures {
+        /// How many of the frames have another signature.
+        frames: usize,
+        /// The first of these.
+        first: u32,
+    },
     /// An answer that came twice.
     Twice {},
     /// No answer, although later requests are answered.

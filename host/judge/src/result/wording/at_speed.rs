@@ -7,6 +7,10 @@ use crate::result::{
 };
 use crate::words::{count, differ_of, grouped, hertz, span, verb};
 
+/// What to do about frames that are wrong only at the full pixel clock.
+pub(super) const CHECK_TIMING: &str =
+    "Check the timing of the datapath at this clock, and its supply while every clock carries a sample.";
+
 pub(super) fn changed_on_entry(
     (rows, first, frame): (usize, usize, u16),
     flipped: Option<FlippedBit>,
@@ -52,9 +56,10 @@ pub(super) fn only_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     Words {
         part: "timing",
         place: format!("a path that fails at the full pixel clock{bits}"),
-        defect: format!("frames that were sent row by row are right, and the same frames without a pause are not{kept}"),
-        designer: "Check the timing of the datapath at this clock, and its supply while every clock carries a sample."
-            .to_owned(),
+        defect: format!(
+            "frames that were sent row by row are right, and the same frames without a pause are not{kept}"
+        ),
+        designer: CHECK_TIMING.to_owned(),
         technician: TIMING,
     }
 }

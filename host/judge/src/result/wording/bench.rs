@@ -1,7 +1,11 @@
 //! What a technician should do about a finding where no suspect says it.
 
 use super::{LOGIC, MEMORY, REPORT, TIMING, technician};
-use crate::result::{BurstCount, Finding};
+use crate::result::{Answer, BurstCount, Finding};
+
+/// What tells a rule that is broken from a path that fails at speed now and then.
+const SAME_RULE: &str = "If each run names the same rule, try another board first: if that one fails the same way, the design or \
+                         the bitstream is wrong.";
 
 /// What a technician should do with a board that has this finding; none for findings that are not against the board.
 #[must_use]
@@ -12,6 +16,9 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         Finding::SamplesDiffer { suspect: Some(suspect), .. }
         | Finding::DiffersAtSpeed { suspect: Some(suspect), .. } => return Some(technician(suspect)),
         Finding::TablesChanged { found } | Finding::InCorner { found, .. } => return found.technician(),
+        Finding::RuleBroken { found: Answer::OtherSignatures { .. }, .. } => {
+            return Some(format!("{TIMING} {SAME_RULE}"));
+        }
         Finding::SamplesDiffer { suspect: None, .. } => REPORT,
         Finding::EchoWrong {} | Finding::TableCrcWrong {} | Finding::CommitCrcWrong {} => MEMORY,
         Finding::LatencyWrong(late) if late.come_and_go() => TIMING,

@@ -35,7 +35,8 @@ pub fn remedy(finding: &Finding) -> Option<String> {
             "The board uses stale tables: check when its bank switch takes effect."
         }
         Finding::LatencyWrong(late) => latency::remedy(late.are_one_row()),
-        Finding::CounterWrong { rule: Some(_), .. } | Finding::RuleBroken { .. } => rules::REMEDY,
+        Finding::CounterWrong { rule: Some(_), .. } => return Some(rules::remedy(None)),
+        Finding::RuleBroken { found, .. } => return Some(rules::remedy(Some(found))),
         Finding::CounterWrong { rule: None, .. }
         | Finding::GapsMiscounted { .. }
         | Finding::LatencyMiscounted { .. } => {

@@ -2,12 +2,24 @@
 
 use halfrow_protocol::message::RefusalCode;
 
+use super::at_speed::CHECK_TIMING;
 use crate::result::{Answer, RowPart, RowsTried, Rule};
-use crate::words::{count, differ_of};
+use crate::words::{count, differ_of, grouped};
 
-/// What to do about any broken rule.
-pub(super) const REMEDY: &str = "Check how the board decodes and carries out requests, and try it with the conformance \
+/// What to do about any broken rule but one that only signatures show.
+const REMEDY: &str = "Check how the board decodes and carries out requests, and try it with the conformance \
                                  tests; protocol/WIRE.md has the rules.";
+
+/// What to do about a broken rule. Signatures alone may also be wrong because of a path that fails at speed now and then.
+pub(super) fn remedy(found: Option<&Answer>) -> String {
+    if let Some(Answer::OtherSignatures { .. }) = found {
+        return format!(
+            "{CHECK_TIMING} If each of three runs names the same rule, check instead how the board carries out requests; \
+             protocol/WIRE.md has the rules."
+        );
+    }
+    REMEDY.to_owned()
+}
 
 /// How many of the samples differ, in the rows that a rule was tried with.
 pub(super) fn samples_differ((differences, samples): (usize, usize), rows: &RowsTried) -> String {
@@ -44,6 +56,7 @@ fn must(right: &Answer, request: &str) -> String {
         }
         Answer::Row { row, frame } => format!("return row {row} of frame {frame} as it is made"),
         Answer::OtherRow { .. } => format!("answer {request} with another row"),
+        Answer::OtherSignatures { .. } => format!("answer {request} with other signatures"),
         Answer::Twice {} => format!("answer {request} twice"),
         Answer::Nothing {} => format!("leave {request} unanswered"),
     }
@@ -63,6 +76,11 @@ fn did(found: &Answer) -> String {
         }
         Answer::Row { row, frame } => format!("returned row {row} of frame {frame}"),
         Answer::OtherRow { differs } => other_row(differs),
+        Answer::OtherSignatures { frames, first } => format!(
+            "gave another signature for {}, the first is frame {}, and was right in all else",
+            count(*frames, "frame"),
+            grouped(*first)
+        ),
         Answer::Twice {} => "did so twice".to_owned(),
         Answer::Nothing {} => "did not".to_owned(),
     }

@@ -45,6 +45,24 @@ pub(super) fn answers(kind: Kind, right: &Response, found: &Response) -> (Answer
     (quote(expected), quote(came))
 }
 
+/// What is told of records from frame `first` on that `came` where others are right, if they differ in nothing but signatures.
+pub(super) fn other_signatures(right: &[u8], came: &[u8], first: u32) -> Option<Answer> {
+    let (right_head, right) = right.split_at_checked(Records::HEAD)?;
+    let (head, came) = came.split_at_checked(Records::HEAD)?;
+    let (right, came) = (right.as_chunks().0, came.as_chunks().0);
+    if head != right_head || came.len() < right.len() {
+        return None;
+    }
+    let differing = |(right, came): (&[u8; FrameRecord::BYTES], &[u8; FrameRecord::BYTES])| {
+        let (right, came) = (FrameRecord::from(*right), FrameRecord::from(*came));
+        let is_else_right = FrameRecord { signature: right.signature, ..came } == right;
+        is_else_right.then_some(came.signature != right.signature)
+    };
+    let differing: Vec<_> = right.iter().zip(came).map(differing).collect::<Option<_>>()?;
+    let first = (first..).zip(&differing).find_map(|(frame, differs)| differs.then_some(frame))?;
+    Some(Answer::OtherSignatures { frames: differing.into_iter().filter(|differs| *differs).count(), first })
+}
+
 /// The first bytes, in hexadecimal.
 fn beginning(payload: &[u8]) -> String {
     let bytes = payload.iter().take(QUOTED).map(|byte| format!("{byte:02x}"));
@@ -86,6 +104,25 @@ mod tests {
         assert_eq!(expected, format!("…ab{rest}… {flags}"));
         assert_eq!(came, format!("…00{rest}… {flags}"));
         assert_eq!(quoted(Kind::Trap, &[7; 33], &[7; 32]), ["…07 from byte 32 on", "… from byte 32 on"]);
+    }
+
+    /// AT-SPEED.md: the signature is the first 4 of 18 bytes, the number of samples follows.
+    #[test]
+    fn records_with_other_signatures_are_told_only_if_all_else_is_right() {
+        let right = [7; 10 + 3 * 18];
+        let differing = |bytes: &[usize]| {
+            let mut came = right.to_vec();
+            bytes.iter().for_each(|&byte| came[byte] = 0);
+            other_signatures(&right, &came, 40)
+        };
+        assert_eq!(
+            differing(&[10 + 18, 10 + 2 * 18 + 3]),
+            Some(Answer::OtherSignatures { frames: 2, first: 41 })
+        );
+        for bytes in [&[][..], &[10 + 4], &[10, 9], &[10, 10 + 18 + 17]] {
+            assert_eq!(differing(bytes), None, "{bytes:?}");
+        }
+        assert_eq!(other_signatures(&right, &[0; 10 + 2 * 18], 40), None);
     }
 
     #[test]

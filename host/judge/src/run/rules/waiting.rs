@@ -6,10 +6,11 @@ use std::time::Duration;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Burst, BurstState, Records, RefusalCode, Request};
 
-use super::Rules;
 use super::bursts::{Awaited, Held, LONGEST_IDLE, PATIENCE, Told};
+use super::quoted::other_signatures;
+use super::{Rules, broken};
 use crate::board::Response;
-use crate::result::{CheckName, Rule};
+use crate::result::{Answer, CheckName, Rule};
 use crate::run::findings::{During, End};
 
 /// How many records are freed each time that a burst waits for free ones.
@@ -161,6 +162,13 @@ impl Rules<'_, '_> {
             Response::Replied(payload) => Response::Replied(told.held.looked_at(payload)),
             refused => refused,
         });
+        if let Ok(Response::Replied(came)) = &said
+            && let Some(found) = other_signatures(&right, came, told.frames.start)
+        {
+            let ended = told.state == BurstState::Ended;
+            let right = Answer::Burst { ended, records: told.frames.len() };
+            return Err(broken(rule, Kind::Records, right, found));
+        }
         self.judge(rule, Kind::Records, said, &Response::Replied(right))
     }
 

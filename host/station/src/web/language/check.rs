@@ -8,7 +8,7 @@ use serde_json::Value;
 use toml::Spanned;
 
 use super::FILES;
-use super::sentence::{LATE, LATE_AT_TIMES};
+use super::sentence::{BROKEN, BROKEN_AT_SPEED, LATE, LATE_AT_TIMES};
 use crate::codes as station;
 use crate::input_error::{Fault, InputError};
 use crate::said::REMEDIES;
@@ -89,8 +89,9 @@ fn remedies() -> Keys {
     let mut asked: Keys = findings().filter(|(code, _)| asking.contains(code)).chain(defects()).collect();
     let said = said();
     asked.extend(REMEDIES.map(|(code, _)| (code.to_owned(), said.get(code).cloned().unwrap_or_default())));
-    if let Some(names) = asked.get(LATE).cloned() {
-        asked.insert(LATE_AT_TIMES.to_owned(), names);
+    for (code, key) in [(LATE, LATE_AT_TIMES), (BROKEN, BROKEN_AT_SPEED)] {
+        let names = asked.get(code).cloned();
+        asked.extend(names.map(|names| (key.to_owned(), names)));
     }
     asked
 }

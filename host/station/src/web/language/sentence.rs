@@ -22,6 +22,9 @@ const DOUBT: &str = "doubt";
 /// The code of rows that are late, and the key of what it asks for where they come and go.
 pub(super) const LATE: &str = "latency-wrong";
 pub(super) const LATE_AT_TIMES: &str = "latency-wrong-at-times";
+/// The code of a broken rule, and the key of what it asks for where only signatures are wrong.
+pub(super) const BROKEN: &str = "rule-broken";
+pub(super) const BROKEN_AT_SPEED: &str = "rule-broken-at-speed";
 
 /// A sentence on a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -145,5 +148,9 @@ fn written(asked: &str) -> String {
 
 /// The key of a code's remedy.
 fn asked_by<'a>(code: &'a str, parameters: &Value) -> &'a str {
-    if code == LATE && late(parameters).is_some_and(|late| late.come_and_go()) { LATE_AT_TIMES } else { code }
+    match code {
+        LATE if late(parameters).is_some_and(|late| late.come_and_go()) => LATE_AT_TIMES,
+        BROKEN if parameters.pointer("/found/other-signatures").is_some() => BROKEN_AT_SPEED,
+        _ => code,
+    }
 }

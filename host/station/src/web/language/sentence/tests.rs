@@ -204,6 +204,23 @@ fn one_late_row_is_told_as_one_and_rows_that_are_late_now_and_then_ask_for_a_loo
     }
 }
 
+/// A technician is asked for the same as for a frame that was wrong at speed, and told what shows that a rule is broken.
+#[test]
+fn signatures_alone_ask_for_a_look_at_the_timing_and_for_the_rule_that_each_run_names() {
+    let found = json!({ "other-signatures": { "frames": 2, "first": 0 } });
+    let asked = |language, code, parameters: &Value| {
+        of(Some(language), None).remedy(Some(&judged(code, parameters)), "in English").text
+    };
+    for (language, rule) in [("de", "dieselbe Regel"), ("zh", "同一条规则")] {
+        let [broken, at_speed] =
+            ["rule-broken", "differs-at-speed"].map(|code| asked(language, code, &json!({ "found": found })));
+        let (begins, rest) = broken.split_at(at_speed.trim_end_matches(['.', '。']).len());
+        assert_eq!(begins, at_speed.trim_end_matches(['.', '。']));
+        assert!(rest.contains(rule), "{broken}");
+        assert_ne!(asked(language, "rule-broken", &json!({ "found": { "taken": {} } })), broken);
+    }
+}
+
 /// What the station itself asks for, also about boards that a plan refuses.
 #[test]
 fn what_the_station_asks_for_is_told_in_the_language() {
