@@ -314,6 +314,18 @@ fn the_boards_that_have_bitstreams_are_listed_with_what_to_load() {
     assert_eq!(halfrow(["boards", "mock", "--json"]).json()["bitstreams"], json!([]));
 }
 
+/// File names are bytes, and need not be text; the document is.
+#[test]
+fn a_bitstream_whose_name_is_no_text_is_loaded() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = with_loader(WORKS);
+    let name = std::ffi::OsStr::from_bytes(b"caf\xe9.bit");
+    fs::rename(folder.path().join("top.bit"), folder.path().join(name)).unwrap();
+    let ended = finish(command(&folder, &["--json", "--onto", "ulx3s"]).arg(name));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(ended.json()["loaded"]["file"], "caf\u{fffd}.bit");
+}
+
 #[test]
 fn a_board_is_loaded_whether_or_not_stdout_takes_the_result() {
     let folder = with_loader(WORKS);

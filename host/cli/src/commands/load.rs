@@ -57,7 +57,7 @@ pub(super) struct Arguments {
 /// What was loaded, and how.
 #[derive(Serialize)]
 struct Loaded<'a> {
-    file: &'a Path,
+    file: String,
     onto: &'static str,
     command: Vec<String>,
     record: Option<&'a Record>,
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         _ => false,
     };
     let loaded = Loaded {
-        file: &arguments.file,
+        file: arguments.file.display().to_string(),
         onto: onto.name,
         command: call.words(),
         record: record.as_ref(),
@@ -231,7 +231,7 @@ fn compare(report: &BoardReport, record: &Record) -> Result<bool, Failure> {
 }
 
 fn text(loaded: &Loaded<'_>, board: Option<&BoardReport>) -> String {
-    let mut lines = vec![format!("{:<12} {} into {}", "loaded", loaded.file.display(), loaded.onto)];
+    let mut lines = vec![format!("{:<12} {} into {}", "loaded", loaded.file, loaded.onto)];
     if let Some(Record { kind, device, build, tools, .. }) = loaded.record {
         lines.push(format!("{:<12} {build}: {kind} for {device}, by {tools}", "build"));
     }
