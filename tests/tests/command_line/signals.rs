@@ -149,7 +149,7 @@ fn who_writes_nothing_is_not_told_of_what_is_gone() {
 }
 
 #[test]
-fn a_second_signal_ends_at_once_what_the_first_could_not() {
+fn a_signal_ends_a_command_whose_board_waits_for_a_frame() {
     let folder = Folder::new();
     let pipe = folder.path().join("in.pgm");
     nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();
@@ -159,10 +159,13 @@ fn a_second_signal_ends_at_once_what_the_first_could_not() {
     // It makes the folder once it has opened its board, and then waits for a frame that does not come.
     until_there_is(folder.path(), |name| name == "out");
     running.send("INT");
-    running.send("TERM");
     let ended = running.end();
-    assert!([Some(130), Some(143)].contains(&ended.code), "{ended:?}");
+    assert_eq!(ended.code, Some(130), "{}", ended.stderr);
     assert_eq!(folder.names("out"), [""; 0]);
+    let late =
+        folder.halfrow(small("correct", &["in.pgm", "-o", "out", "--board", "mock", "--timeout", "0.1"]));
+    assert_eq!(late.code, Some(3), "{}", late.stderr);
+    assert!(late.stderr.contains("within its time limit"), "{}", late.stderr);
 }
 
 /// `timeout` signals a program, and then its whole group. On a busy computer the second signal may come too late for that.

@@ -45,6 +45,15 @@ impl Stop {
         Self { spent, ..self.clone() }
     }
 
+    /// Whether to go on, as far as that can be told without a link: for a caller that waits for something other than its board.
+    ///
+    /// # Errors
+    /// [`BoardError::Stopped`] and [`BoardError::Timeout`].
+    pub fn check_wall(&self) -> Result<(), BoardError> {
+        let silent = self.wall.map(|(begun, _)| begun.elapsed());
+        self.check(Duration::ZERO, silent.unwrap_or_default())
+    }
+
     /// Whether to go on at `now`, when nothing has come for the time `silent`.
     pub(crate) fn check(&self, now: Duration, silent: Duration) -> Result<(), BoardError> {
         if let Some(by) = self.asked.as_ref().and_then(|asked| asked()) {

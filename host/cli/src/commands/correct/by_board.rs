@@ -4,18 +4,23 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Duration;
+use std::{panic, thread};
 
 use anyhow::Context as _;
 use halfrow_model::Frame;
 
 use super::places::Places;
-use super::{Context, Failure, Job, Look};
-use halfrow::board::Board;
+use super::{Context, Failure, FrameName, Job, Look};
+use halfrow::board::{Board, Stop};
 use halfrow::correction::Correction;
 use halfrow::frames::{self, Decoded};
 use halfrow::progress::Progress;
 use halfrow::run::{self, JUDGED};
 use halfrow::target::BoardKind;
+
+/// How often to look whether to stop while an input is awaited.
+const LOOK: Duration = Duration::from_millis(10);
 
 impl Job<'_> {
     /// Corrects all frames, and returns the kind of board that did. The first failure ends the rest; frames written by then
@@ -30,12 +35,18 @@ impl Job<'_> {
         let options = self.arguments.board.open_options(&context.settings)?;
         Board::with(candidate.link, &options, |board| {
             run::check_fit(&self.chosen.tables, &self.chosen.kernel, board.capabilities())?;
-            self.stream(board, places, progress)?;
+            self.stream(board, places, &options.stop, progress)?;
             Ok(candidate.kind.confirmed_by(board.capabilities().nature))
         })?
     }
 
-    fn stream(&self, board: &mut Board, places: &Places, progress: &dyn Progress) -> Result<(), Failure> {
+    fn stream(
+        &self,
+        board: &mut Board,
+        places: &Places,
+        stop: &Stop,
+        progress: &dyn Progress,
+    ) -> Result<(), Failure> {
         places.make_folders().map_err(Failure::error)?;
         let correction = Correction {
             tables: &self.chosen.tables,
@@ -46,7 +57,7 @@ impl Job<'_> {
         let (mut unread, mut unwritten) = (None, None);
         // Of the frames on their way through the board.
         let looks = RefCell::new(VecDeque::new());
-        let inputs = self.inputs.iter().map_while(|input| match input.frame(&self.how, &self.scene) {
+        let inputs = self.inputs.iter().map_while(|input| match self.read(input, stop) {
             Ok(Decoded { frame, fitting, orientation, is_coded }) => {
                 self.tell_unchecked(input, fitting);
                 looks.borrow_mut().push_back(Look { orientation, is_coded });
@@ -67,9 +78,26 @@ impl Job<'_> {
         let streamed = correction.run(board, inputs, take, progress);
         match (unwritten, unread) {
             (Some(error), _) => Err(error),
-            (None, Some(error)) => Err(Failure::call(error)),
+            (None, Some(error)) => Err(error),
             (None, None) => Ok(streamed.map(drop)?),
         }
+    }
+
+    /// The frame of `input`. Opening or reading a pipe may take for ever, while the board is held: `stop` ends that too.
+    fn read(&self, input: &FrameName, stop: &Stop) -> Result<Decoded, Failure> {
+        if input.file().is_none() || input.can_be_read_twice() {
+            return input.frame(&self.how, &self.scene).map_err(Failure::call);
+        }
+        let (awaited, how, scene) = (input.clone(), self.how, self.scene);
+        let reader = thread::Builder::new().name("input".to_owned());
+        let reader = reader.spawn(move || awaited.frame(&how, &scene));
+        let reader =
+            reader.context("no thread can be started; end other programs").map_err(Failure::error)?;
+        while !reader.is_finished() {
+            stop.check_wall()?;
+            thread::sleep(LOOK);
+        }
+        reader.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)).map_err(Failure::call)
     }
 
     fn write(&self, places: &Places, index: usize, look: Look, samples: Vec<u16>) -> Result<(), Failure> {
