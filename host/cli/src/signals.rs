@@ -2,7 +2,7 @@
 //!
 //! A command with a board asks for them ([`stop`]): the first one is noted, so that the command can end in order, and a second
 //! ends the program at once, unless it is the first one again ([`AGAIN`]). Any other command ends at the first. However it ends,
-//! nothing half written stays.
+//! nothing half written stays, except for what there is of a recording.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -15,7 +15,7 @@ use signal_hook::iterator::Signals;
 
 use crate::console;
 use crate::exit::Exit;
-use halfrow::files::written_aside;
+use halfrow::files::written_aside::{self, Abandoned};
 use halfrow_program::signals::is_ignored;
 
 /// How long the last message may take.
@@ -79,17 +79,23 @@ fn receive(exit: Exit) {
     if is_first && IS_HEEDED.load(Ordering::SeqCst) {
         return;
     }
-    let said = if written_aside::abandon_all() {
-        "stopped by a signal; what was not whole yet is gone"
-    } else {
-        "stopped by a signal"
-    };
-    tell(said);
+    tell(said_of(&written_aside::abandon_all()));
     signal_hook::low_level::exit(exit.code().into());
 }
 
+fn said_of(abandoned: &Abandoned) -> String {
+    let kept: Vec<_> = abandoned.kept.iter().map(|path| path.display().to_string()).collect();
+    match (abandoned.is_any, kept.join(" and ")) {
+        (false, _) => "stopped by a signal".to_owned(),
+        (true, kept) if kept.is_empty() => "stopped by a signal; what was not whole yet is gone".to_owned(),
+        (true, kept) => format!(
+            "stopped by a signal; what there is of the recording is kept in {kept}, and what else was not whole yet is gone"
+        ),
+    }
+}
+
 /// Says it on stderr, on a thread with a time limit: the rest of the program may be blocked there for ever.
-fn tell(said: &'static str) {
+fn tell(said: String) {
     let (done, is_done) = mpsc::channel();
     let teller = thread::Builder::new().spawn(move || {
         console::error(&said);

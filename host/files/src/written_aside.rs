@@ -23,7 +23,7 @@ pub use error::{Unfinished, WriteAsideError};
 pub use folder::{AsideFolder, Misplaced};
 pub use place::{Place, check, check_folder, clear, clear_older};
 use rights::Rights;
-pub use under_way::abandon_all;
+pub use under_way::{Abandoned, abandon_all};
 
 /// Bytes that are written at once: writes of whole multiples of it are handed on as they are.
 pub const BUFFER: usize = 1 << 17;

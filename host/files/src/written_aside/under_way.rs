@@ -70,16 +70,29 @@ fn made<T>(make: impl FnOnce() -> io::Result<(T, PathBuf)>) -> io::Result<(T, No
     Ok((made, Noted(path)))
 }
 
+/// What [`abandon_all`] found.
+#[derive(Debug)]
+pub struct Abandoned {
+    /// Whether anything was under way.
+    pub is_any: bool,
+    /// Where streams that are worth keeping now are, as far as they go.
+    pub kept: Vec<PathBuf>,
+}
+
 /// Removes everything that is under way, for a program that must end at once, and lets nothing new begin. Streams that are
-/// worth keeping stay for the next run to find. Returns whether anything was under way.
-pub fn abandon_all() -> bool {
+/// worth keeping get a name that is free.
+pub fn abandon_all() -> Abandoned {
     let under_way = under_way();
-    let is_any = !under_way.is_empty();
-    for path in under_way.iter().filter(|path| !is_worth_keeping(path)) {
-        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    let mut abandoned = Abandoned { is_any: !under_way.is_empty(), kept: Vec::new() };
+    for path in under_way.iter() {
+        if is_worth_keeping(path) && fs::metadata(path).is_ok_and(|about| about.len() > 0) {
+            abandoned.kept.push(kept(path).unwrap_or_else(|_| path.clone()));
+        } else {
+            let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+        }
     }
     std::mem::forget(under_way);
-    is_any
+    abandoned
 }
 
 /// A locked file in `folder`, with the given rights or ordinary ones. If it is worth keeping, `kept_for` is the name that it is
