@@ -1,6 +1,7 @@
 // A verilated design with its clock, its context and its waveform.
 #pragma once
 
+#include <cerrno>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
@@ -8,6 +9,20 @@
 
 #include "verilated.h"
 #include "verilated_vcd_c.h"
+
+// A waveform's file. What cannot be written is passed over and noted: the library would try to end the program, and hang in its
+// own locks.
+struct WaveformFile : VerilatedVcdFile {
+    bool is_whole = true;
+
+    ssize_t write(const char* bytes, ssize_t length) override {
+        if (!is_whole) return length;
+        const ssize_t written = VerilatedVcdFile::write(bytes, length);
+        if (written >= 0 || errno == EAGAIN || errno == EINTR) return written;
+        is_whole = false;
+        return length;
+    }
+};
 
 // Whether a model was translated with what a waveform needs.
 template <class Model, class = void>
@@ -20,6 +35,7 @@ template <class Model>
 struct Design {
     VerilatedContext context;
     std::unique_ptr<Model> model;
+    WaveformFile waveform;
     std::unique_ptr<VerilatedVcdC> trace;
 
     // Registers and memories power up with what `seed` draws.
@@ -37,12 +53,18 @@ struct Design {
 
     bool trace_to(const char* path) {
         if constexpr (IsTraced<Model>::value) {
-            trace = std::make_unique<VerilatedVcdC>();
+            trace = std::make_unique<VerilatedVcdC>(&waveform);
             model->trace(trace.get(), 99);
             trace->open(path);
             return trace->isOpen();
         }
         return false;
+    }
+
+    // Whether all of the waveform until now is in its file; true if there is none.
+    bool is_traced() {
+        if (trace) trace->flush();
+        return waveform.is_whole;
     }
 
     // Settles everything that depends on the inputs. With all clocks low, the outputs are then what a register samples at the
@@ -71,6 +93,7 @@ struct Functions {
     void* (*create)(uint32_t seed);
     void (*destroy)(void* design);
     bool (*trace)(void* design, const char* path);
+    bool (*is_traced)(void* design);
     void (*clock)(void* design, const Inputs* inputs, Outputs* outputs);
 };
 
@@ -80,6 +103,7 @@ constexpr Functions<Inputs, Outputs> functions() {
         [](uint32_t seed) -> void* { return new Design<Model>(seed); },
         [](void* design) { delete static_cast<Design<Model>*>(design); },
         [](void* design, const char* path) { return static_cast<Design<Model>*>(design)->trace_to(path); },
+        [](void* design) { return static_cast<Design<Model>*>(design)->is_traced(); },
         [](void* design, const Inputs* inputs, Outputs* outputs) {
             clock(*static_cast<Design<Model>*>(design), *inputs, *outputs);
         },

@@ -69,6 +69,9 @@ pub enum Failure {
         /// When, in simulated time.
         picoseconds: u64,
     },
+    /// Its waveform cannot be written on.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
 }
 
 /// The waveform of the simulated board cannot be written.
@@ -77,7 +80,7 @@ pub enum TraceError {
     /// A file or a link of that name exists.
     #[error("{0} is there already; remove it, or choose another place for the waveform with trace=FILE")]
     Exists(PathBuf),
-    /// The file cannot be opened.
+    /// The file cannot be opened, or takes no more.
     #[error("the waveform {0} cannot be written; choose another place with trace=FILE")]
     Unwritable(PathBuf),
 }
@@ -90,6 +93,8 @@ pub struct Board {
     /// Milliseconds that the design has been told of.
     milliseconds: u64,
     failure: Option<Failure>,
+    /// The file of the waveform, if one is written.
+    waveform: Option<PathBuf>,
 }
 
 impl Board {
@@ -123,7 +128,7 @@ impl Board {
     pub(crate) fn with<P: Port + 'static>(mut port: P, patience: u32) -> Self {
         port.reset();
         let machine = Box::new(Clocked { port, patience });
-        Self { machine, outgoing: Vec::new(), milliseconds: 0, failure: None }
+        Self { machine, outgoing: Vec::new(), milliseconds: 0, failure: None, waveform: None }
     }
 
     /// From now on writes a waveform of the whole design to `path`, in VCD. Builds for tests have none.
@@ -137,10 +142,18 @@ impl Board {
             _ => TraceError::Unwritable(path.to_owned()),
         })?;
         if self.machine.trace(path) {
+            self.waveform = Some(path.to_owned());
             return Ok(());
         }
         _ = fs::remove_file(path);
         Err(TraceError::Unwritable(path.to_owned()))
+    }
+
+    fn check_waveform(&mut self) -> Result<(), Failure> {
+        match &self.waveform {
+            Some(path) if !self.machine.is_traced() => Err(TraceError::Unwritable(path.clone()).into()),
+            _ => Ok(()),
+        }
     }
 
     /// Milliseconds that have passed since those that the design was last told of.
@@ -160,7 +173,8 @@ impl Endpoint for Board {
             return Err(failure.clone());
         }
         let milliseconds = self.pass(now);
-        let done = self.machine.run(milliseconds, bytes, &mut self.outgoing);
+        let done =
+            self.machine.run(milliseconds, bytes, &mut self.outgoing).and_then(|()| self.check_waveform());
         self.failure = done.clone().err();
         done
     }
@@ -176,6 +190,8 @@ trait Machine: Send {
     fn run(&mut self, milliseconds: u64, bytes: &[u8], said: &mut Vec<u8>) -> Result<(), Failure>;
 
     fn trace(&mut self, path: &Path) -> bool;
+
+    fn is_traced(&mut self) -> bool;
 }
 
 struct Clocked<P> {
@@ -210,5 +226,9 @@ impl<P: Port> Machine for Clocked<P> {
 
     fn trace(&mut self, path: &Path) -> bool {
         self.port.trace(path)
+    }
+
+    fn is_traced(&mut self) -> bool {
+        self.port.is_traced()
     }
 }

@@ -39,4 +39,8 @@ impl Port for BytePort {
     fn trace(&mut self, path: &Path) -> bool {
         self.0.trace(path)
     }
+
+    fn is_traced(&mut self) -> bool {
+        self.0.is_traced()
+    }
 }

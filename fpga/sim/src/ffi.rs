@@ -135,6 +135,7 @@ pub(crate) struct Functions<I, O> {
     create: unsafe extern "C" fn(u32) -> *mut c_void,
     destroy: unsafe extern "C" fn(*mut c_void),
     trace: unsafe extern "C" fn(*mut c_void, *const c_char) -> bool,
+    is_traced: unsafe extern "C" fn(*mut c_void) -> bool,
     clock: unsafe extern "C" fn(*mut c_void, *const I, *mut O),
 }
 
@@ -237,6 +238,12 @@ impl<I, O: Default> Design<I, O> {
         let Ok(path) = CString::new(path.as_os_str().as_bytes()) else { return false };
         // SAFETY: the object is alive, and the string outlives the call.
         unsafe { (self.functions.trace)(self.object, path.as_ptr()) }
+    }
+
+    /// Whether all of the waveform until now is in its file; true if there is none.
+    pub(crate) fn is_traced(&mut self) -> bool {
+        // SAFETY: the object is alive.
+        unsafe { (self.functions.is_traced)(self.object) }
     }
 }
 

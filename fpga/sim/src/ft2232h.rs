@@ -238,4 +238,8 @@ impl Port for Ft2232h {
     fn trace(&mut self, path: &Path) -> bool {
         self.design.trace(path)
     }
+
+    fn is_traced(&mut self) -> bool {
+        self.design.is_traced()
+    }
 }

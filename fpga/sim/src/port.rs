@@ -28,6 +28,9 @@ pub(crate) trait Port: Send {
 
     /// From now on writes a waveform to `path`. Returns whether the file could be opened.
     fn trace(&mut self, path: &Path) -> bool;
+
+    /// Whether all of the waveform until now is in its file; true if there is none.
+    fn is_traced(&mut self) -> bool;
 }
 
 /// Two unrelated clocks.

@@ -157,4 +157,8 @@ impl Port for Uart {
     fn trace(&mut self, path: &Path) -> bool {
         self.design.trace(path)
     }
+
+    fn is_traced(&mut self) -> bool {
+        self.design.is_traced()
+    }
 }

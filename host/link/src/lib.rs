@@ -129,6 +129,10 @@ pub enum LinkError {
         #[source]
         source: Box<dyn std::error::Error + Send + Sync>,
     },
+    /// The waveform of the simulated board cannot be written on.
+    #[cfg(feature = "sim")]
+    #[error(transparent)]
+    Trace(#[from] TraceError),
     /// The board's device is gone: it was unplugged or lost power.
     #[error(
         "{link} went away at {:.3} s: the board was unplugged or lost power; plug it in, then run again",

@@ -1,5 +1,6 @@
 //! A board in this process as a link, on its pipe's virtual clock or paced like a real one.
 
+use std::error::Error;
 use std::time::{Duration, Instant};
 
 use halfrow_pipe::{Broken, Endpoint, Pipe};
@@ -47,9 +48,7 @@ where
         }
         moved.map_err(|broken| match broken {
             Broken::Disconnected { .. } => LinkError::Closed { link: self.name(), at: self.now() },
-            Broken::Board { failure, .. } => {
-                LinkError::Stopped { board: self.board, at: self.now(), source: Box::new(failure) }
-            }
+            Broken::Board { failure, .. } => stopped(self.board, self.now(), Box::new(failure)),
         })
     }
 
@@ -68,6 +67,16 @@ where
             None => format!("{board}'s simulated link (no speed limit, {clock})"),
         }
     }
+}
+
+/// Why `board`, which is in this program, has stopped.
+fn stopped(board: &'static str, at: Duration, source: Box<dyn Error + Send + Sync>) -> LinkError {
+    // The board itself is well, and nobody needs to report it.
+    #[cfg(feature = "sim")]
+    if let Some(halfrow_sim::Failure::Trace(waveform)) = source.downcast_ref() {
+        return waveform.clone().into();
+    }
+    LinkError::Stopped { board, at, source }
 }
 
 #[cfg(test)]

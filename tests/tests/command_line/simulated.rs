@@ -2,7 +2,7 @@
 
 use std::os::unix::fs::symlink;
 
-use halfrow_tests::program::Folder;
+use halfrow_tests::program::{Folder, Running};
 
 use crate::{refused, small};
 
@@ -34,6 +34,16 @@ fn a_waveform_is_written_and_never_over_another_file() {
     let overwriting = small("verify", &["--board", "sim,trace=run.vcd", "--overwrite"]);
     refused(&folder, &overwriting, "run.vcd is there already");
     assert_eq!(folder.text("run.vcd"), waveform);
+}
+
+/// The file may have 512 bytes, which is less than the waveform's own head.
+#[test]
+fn a_waveform_that_has_no_space_is_an_error_and_no_hang() {
+    let folder = Folder::new();
+    let call = ["info", "--json", "--board", "sim,trace=run.vcd"];
+    let ended = Running::start(&mut folder.by_shell("ulimit -f 1; exec \"$@\"", call)).end();
+    assert_eq!(ended.code, Some(3), "{}", ended.stderr);
+    assert!(ended.stdout.contains("waveform-not-written"), "{}", ended.stdout);
 }
 
 #[test]

@@ -53,6 +53,8 @@ codes! {
         OtherConversation [byte] => "recording-of-other-run",
         RecordingEnds [link, at] => "recording-ends",
         Record => "recording-not-written",
+        #[cfg(feature = "sim")]
+        = Trace,
     }
     OpenError {
         UnknownKind (kind) => "target-kind-unknown",
