@@ -237,7 +237,8 @@ pub fn kernel(name: &OsStr) -> Result<Kernel, OpticsError> {
 pub fn kernel_file(name: &OsStr) -> Result<(KernelFile, Option<Input>), OpticsError> {
     match name.to_string_lossy().parse::<NamedKernel>() {
         Ok(named) => Ok((KernelFile { kernel: named.kernel()?, about: None }, None)),
-        Err(unknown) if !Path::new(name).exists() => {
+        // What may not be looked at may be there: reading it says why it cannot be.
+        Err(unknown) if matches!(Path::new(name).try_exists(), Ok(false)) => {
             Err(OpticsError::Kernel { name: name.display().to_string(), unknown })
         }
         Err(_) => {

@@ -68,6 +68,8 @@ fn names_of_nothing_are_refused_with_those_that_there_are() {
     refused(&folder, &["verify", "--kernel", "sharq5"], neither);
     refused(&folder, &["kernel", "measure", "--images", ".", "--kernel", "sharq5"], neither);
     refused(&folder, &small("tables", &["--kernel", "sharq5", "-o", "lens.json"]), neither);
+    std::os::unix::fs::symlink("loop", folder.path().join("loop")).unwrap();
+    refused(&folder, &["verify", "--kernel", "loop"], "Too many levels of symbolic links");
     refused(&folder, &["verify", "--phase", "moon"], "moon");
     refused(&folder, &["verify", "--raw", "u15"], "u15");
     refused(&folder, &["verify", "--moon"], "unexpected argument '--moon'");
