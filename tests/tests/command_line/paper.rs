@@ -186,8 +186,9 @@ fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
     let (_, said) = made(&folder, 3, &["resources", "--overwrite", "--synthesis", "large.json"]);
     assert!(said.contains("MISSED"), "{said}");
     folder.write("bad.json", "{}");
-    let call = ["paper", "resources", "--overwrite", "-o", "out", "--synthesis", "bad.json"];
+    let call = ["paper", "fig5", "resources", "-o", "new", "--synthesis", "bad.json"];
     refused(&folder, &call, "make it anew");
+    assert!(!folder.path().join("new").exists(), "it was noticed once the folder was made");
 }
 
 #[test]

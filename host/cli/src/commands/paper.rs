@@ -20,7 +20,7 @@ use halfrow::frames::preview::RgbImage;
 use halfrow::progress::Progress;
 use halfrow_lab::paper::{
     self, Claim, Exhibit, Folder, Item, MarkedError, MarkedPhotograph, Material, Outcome, PaperError,
-    TestedBoard,
+    Synthesis, TestedBoard,
 };
 
 #[derive(Debug, Args)]
@@ -68,13 +68,14 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let photographs = arguments.photographs(&items);
     let photographs = photographs.map_err(|error| Failure::call(error).in_value_of("--images"))?;
     let marked = arguments.marked().map_err(Failure::call)?;
+    let synthesis = arguments.synthesis(&items)?;
     let folder = Folder::prepare(&arguments.output, arguments.overwrite).map_err(Failure::call)?;
     let mut material = Material {
         photographs: &photographs,
         marked: marked.as_ref(),
         board: None,
         through_board,
-        synthesis: &arguments.synthesis,
+        synthesis: &synthesis,
     };
     if uses_board {
         material.board = Some(arguments.open(&context.settings)?);
@@ -182,6 +183,14 @@ impl Arguments {
     fn marked(&self) -> Result<Option<MarkedPhotograph>, MarkedError> {
         let [Some(photograph), Some(lines)] = [&self.photograph, &self.lines] else { return Ok(None) };
         MarkedPhotograph::read(photograph, lines).map(Some)
+    }
+
+    fn synthesis(&self, items: &[Item]) -> Result<Synthesis, PaperError> {
+        if items.contains(&Item::Resources) {
+            Synthesis::read(&self.synthesis)
+        } else {
+            Ok(Synthesis::none(&self.synthesis))
+        }
     }
 
     fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {

@@ -143,7 +143,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::paper::Material;
+    use crate::paper::{Material, Synthesis};
     use halfrow::frames::preview::RgbImage;
     use halfrow::progress::Silent;
 
@@ -152,13 +152,13 @@ mod tests {
     fn items_of_photographs_write_the_files_on_their_lists() {
         let (width, height) = (768, 512);
         let flat = RgbImage { width, height, data: vec![90; 3 * width * height] };
-        let (photographs, synthesis) = (vec![flat; 8], Path::new(""));
+        let (photographs, synthesis) = (vec![flat; 8], Synthesis::none(Path::new("")));
         let mut material = Material {
             photographs: &photographs,
             marked: None,
             board: None,
             through_board: false,
-            synthesis,
+            synthesis: &synthesis,
         };
         for item in Item::ALL.into_iter().filter(|item| item.needs_photographs()) {
             let exhibit = material.exhibit(item, &Silent).unwrap();

@@ -45,10 +45,9 @@ pub use marked::{MarkedError, MarkedPhotograph};
 pub use outcome::Outcome;
 pub use photographs::{PhotographError, read as read_photographs};
 pub(crate) use psnr::psnr;
+pub use resources::Synthesis;
 pub use tested_board::TestedBoard;
 pub use views::{View, ray};
-
-use std::path::Path;
 
 use halfrow_model::Geometry;
 
@@ -66,8 +65,8 @@ pub struct Material<'a> {
     pub board: Option<TestedBoard>,
     /// Whether Table 1 goes through the board too.
     pub through_board: bool,
-    /// The file that `scripts/hardware resources` wrote.
-    pub synthesis: &'a Path,
+    /// What `scripts/hardware resources` wrote.
+    pub synthesis: &'a Synthesis,
 }
 
 impl Material<'_> {
@@ -93,7 +92,7 @@ impl Material<'_> {
                 let board = self.board.as_mut().ok_or(PaperError::NoBoard)?;
                 delay::exhibit(board, progress)
             }
-            Item::Resources => resources::exhibit(self.synthesis),
+            Item::Resources => Ok(resources::exhibit(self.synthesis)),
         }
     }
 

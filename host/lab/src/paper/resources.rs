@@ -1,7 +1,7 @@
 //! The resources claimed in Sect. 4.2: on average less than a tenth of a Spartan-6 LX25.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use halfrow::files::text;
 use serde::Deserialize;
@@ -41,23 +41,46 @@ struct Share {
 /// The build that has just what the paper's algorithm needs: Hermite takes five taps.
 const PAPER_BUILD: &str = "core, 5 taps, 1 bank";
 
-/// The claim, if there is a report at `path`; otherwise how to make one.
-pub(super) fn exhibit(path: &Path) -> Result<Exhibit, PaperError> {
+/// What `scripts/hardware resources` has reported, if it has.
+#[derive(Debug)]
+pub struct Synthesis {
+    path: PathBuf,
+    report: Option<Report>,
+}
+
+impl Synthesis {
+    /// The report in the file `path`, which need not be there.
+    ///
+    /// # Errors
+    /// [`PaperError::Synthesis`] when it is there and cannot be used.
+    pub fn read(path: &Path) -> Result<Self, PaperError> {
+        let wrong = |source| PaperError::Synthesis { path: path.to_owned(), source };
+        let report = match text::read(path, text::MAX_BYTES) {
+            Ok(text) => serde_json::from_str(&text).map_err(|source| wrong(source.into()))?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(source) => return Err(wrong(source)),
+        };
+        Ok(Self { path: path.to_owned(), report })
+    }
+
+    /// No report at `path`, for items that need none.
+    #[must_use]
+    pub fn none(path: &Path) -> Self {
+        Self { path: path.to_owned(), report: None }
+    }
+}
+
+/// The claim, if there is a report; otherwise how to make one.
+pub(super) fn exhibit(synthesis: &Synthesis) -> Exhibit {
     let mut exhibit = Exhibit::new(Item::Resources);
-    let text = match text::read(path, text::MAX_BYTES) {
-        Ok(text) => text,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            exhibit.open.push(format!(
-                "there is no synthesis report at {}: run `scripts/hardware resources` in the project's folder, or name \
-                 one with --synthesis",
-                path.display()
-            ));
-            return Ok(exhibit);
-        }
-        Err(source) => return Err(PaperError::Synthesis { path: path.to_owned(), source }),
+    let path = synthesis.path.display();
+    let Some(report) = &synthesis.report else {
+        exhibit.open.push(format!(
+            "there is no synthesis report at {path}: run `scripts/hardware resources` in the project's folder, or name one \
+             with --synthesis"
+        ));
+        return exhibit;
     };
-    let report: Report = serde_json::from_str(&text)
-        .map_err(|source| PaperError::Synthesis { path: path.to_owned(), source: source.into() })?;
     exhibit.remark(format!(
         "Synthesised with {} for the {}; it counts no slices. The mean is that of the shares of LUTs, registers, block RAMs \
          and DSP slices. The claim is held to the build of five taps, which is all that Hermite takes; cubic takes seven.",
@@ -74,10 +97,10 @@ pub(super) fn exhibit(path: &Path) -> Result<Exhibit, PaperError> {
         }
     }));
     if exhibit.claims.is_empty() {
-        exhibit.open.push(format!("{} has no build `{PAPER_BUILD}`: make it anew", path.display()));
+        exhibit.open.push(format!("{path} has no build `{PAPER_BUILD}`: make it anew"));
     }
-    exhibit.tables.push(table(&report));
-    Ok(exhibit)
+    exhibit.tables.push(table(report));
+    exhibit
 }
 
 fn table(report: &Report) -> Table {
