@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 
 use clap::builder::Resettable;
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
 
 /// `argument`, without its variable if that is empty: CI files unset variables that way.
@@ -22,8 +22,11 @@ pub(crate) fn unless(left_out: bool, argument: Arg) -> Arg {
 pub(crate) fn blamed(
     mut error: Error,
     command: &Command,
-    read: impl FnOnce(&dyn Fn(&Arg) -> bool) -> Option<Error>,
+    read: impl Fn(&dyn Fn(&Arg) -> bool) -> Option<Error>,
 ) -> Error {
+    if error.kind() == ErrorKind::InvalidUtf8 {
+        return no_text(command, read).unwrap_or(error);
+    }
     let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg).cloned() else {
         return error;
     };
@@ -35,6 +38,29 @@ pub(crate) fn blamed(
         error.insert(ContextKind::InvalidArg, ContextValue::String(named));
     }
     error
+}
+
+/// The error about a variable that must be text and is none, if leaving out such variables helps. clap does not say which it is.
+fn no_text(command: &Command, read: impl Fn(&dyn Fn(&Arg) -> bool) -> Option<Error>) -> Option<Error> {
+    let mut left_out = Vec::new();
+    for variable in variables(command) {
+        if std::env::var_os(variable).is_none_or(|value| value.to_str().is_some()) {
+            continue;
+        }
+        left_out.push(variable);
+        let without = read(&|argument| argument.get_env().is_some_and(|of_this| left_out.contains(&of_this)));
+        if without.is_none_or(|without| without.kind() != ErrorKind::InvalidUtf8) {
+            let told = format!("{} in the environment is no text in UTF-8\n", variable.display());
+            return Some(Error::raw(ErrorKind::InvalidUtf8, told).with_cmd(command));
+        }
+    }
+    None
+}
+
+/// The variables of all options.
+fn variables(command: &Command) -> Vec<&OsStr> {
+    let own = command.get_arguments().filter_map(Arg::get_env);
+    own.chain(command.get_subcommands().flat_map(variables)).collect()
 }
 
 /// The variable of the option `--name`.

@@ -103,6 +103,23 @@ fn a_wrong_value_of_the_environment_is_told_as_the_variable_s() {
     assert!(!ended.stderr.contains("HALFROW_KERNEL"), "{}", ended.stderr);
 }
 
+/// A file's name need not be text, so that not every variable of this kind is wrong.
+#[test]
+fn a_variable_that_is_no_text_is_named_where_it_must_be_text() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = Folder::new();
+    let other = std::ffi::OsStr::from_bytes(b"\xff");
+    let names = ["HALFROW_KERNEL", "HALFROW_OPERATOR"];
+    let ended = finish(folder.command(small("verify", &["--json"])).envs(names.map(|name| (name, other))));
+    let error = &ended.json()["error"];
+    assert_eq!(
+        error["message"], "HALFROW_OPERATOR in the environment is no text in UTF-8",
+        "{}",
+        ended.stderr
+    );
+    assert_eq!((ended.code, &error["code"]), (Some(2), &"usage-value-wrong".into()));
+}
+
 #[test]
 fn a_wrong_value_of_the_settings_file_is_told_with_the_file_and_the_key() {
     let folder = Folder::new();
