@@ -119,7 +119,8 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
         line([-6.0, 3.0, 4.0], [6.0, 3.0, 4.0], "level"),
         line([-5.0, -4.0, 2.0], [-5.0, -4.0, 30.0], "straight"),
     ];
-    folder.write("lines.json", file(320, &lines));
+    // Windows editors put a mark before it.
+    folder.write("lines.json", format!("\u{feff}{}", file(320, &lines)));
     let call = ["fig4", "--photograph", "photograph.png", "--lines", "lines.json", "--overwrite"];
     let (report, _) = made(&folder, 0, &call);
     assert_eq!(report["items"][0]["claims"], json!([]), "what the street must fulfil is not asked of it");

@@ -119,7 +119,7 @@ impl MarkedPhotograph {
         let path = || lines.to_owned();
         let text =
             text::read(lines, text::MAX_BYTES).map_err(|source| MarkedError::Io { path: path(), source })?;
-        let content: Content = serde_json::from_str(&text)
+        let content: Content = serde_json::from_str(text::without_mark(&text))
             .map_err(|error| MarkedError::Content { path: path(), source: short(&error) })?;
         let Circle { centre: [column, row], radius } = content.circle;
         let lens = Equidistant::from_radius(RADIUS).ok().filter(|_| radius >= 1.0);
