@@ -11,6 +11,18 @@ fn no_such_board(target: &str, sentence: &str) {
     refused(&folder, &["info", "--board", target], sentence);
 }
 
+/// Whatever is plugged in.
+#[test]
+fn a_path_that_leads_nowhere_is_no_port() {
+    let folder = Folder::new();
+    folder.write("file", "");
+    std::os::unix::fs::symlink("loop", folder.path().join("loop")).unwrap();
+    for path in ["loop", "file/x"] {
+        let said = format!("{path} is no serial port; see `halfrow boards`");
+        refused(&folder, &["info", "--board", &format!("serial:{path}")], &said);
+    }
+}
+
 /// The cost of a run is listed without opening its board, but not for a target that is none.
 #[test]
 fn a_list_for_a_board_that_cannot_be_named_is_refused() {

@@ -12,6 +12,7 @@ use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use nix::errno::Errno;
 use nix::sys::stat::{major, minor};
 use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort, TTYPort};
 
@@ -204,6 +205,9 @@ fn failed(path: &Path, error: io::Error) -> SerialError {
     let path = path.to_owned();
     match error.kind() {
         io::ErrorKind::NotFound => SerialError::Missing(path),
+        // Such a path leads nowhere, whatever is plugged in.
+        io::ErrorKind::NotADirectory => SerialError::NotAPort(path),
+        _ if error.raw_os_error() == Some(Errno::ELOOP as i32) => SerialError::NotAPort(path),
         io::ErrorKind::PermissionDenied => SerialError::NotAllowed { remedy: how_to_get_access(&path), path },
         _ => SerialError::Other { path, source: error },
     }
