@@ -66,11 +66,11 @@ pub enum LensError {
         max = MAX_RADIUS
     )]
     Radius(f64),
-    /// A focal length that is not above zero.
-    #[error("a focal length of {} mm is not above zero; take it from the lens's data sheet", Short(*.0))]
+    /// A focal length that is not a finite number above zero.
+    #[error("a focal length of {} mm is not a finite number above zero; take it from the lens's data sheet", Short(*.0))]
     FocalLength(f64),
-    /// A pixel pitch that is not above zero.
-    #[error("a pixel pitch of {} um is not above zero; take it from the sensor's data sheet", Short(*.0))]
+    /// A pixel pitch that is not a finite number above zero.
+    #[error("a pixel pitch of {} um is not a finite number above zero; take it from the sensor's data sheet", Short(*.0))]
     PixelPitch(f64),
     /// A field of view that is not above 0°, or is above 360°.
     #[error(

@@ -178,7 +178,7 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
     tables(&["--lens", "equidistant:wide"], "takes the radius");
     tables(&["--lens", "equidistant:0"], "radius");
     tables(&["--lens", "nowhere.yml"], "cannot read the lens file nowhere.yml");
-    tables(&[&lens[..], &["--lens-pitch", "0"]].concat(), "a pixel pitch of 0 um is not above zero");
+    tables(&[&lens[..], &["--lens-pitch", "0"]].concat(), "a pixel pitch of 0 um is not a finite number");
     tables(&[&lens[..], &["--field-of-view", "0"]].concat(), "field of view");
     tables(&[&lens[..], &["--centre-x", "-1"]].concat(), "optical centre");
     for more in ["--pixel-pitch", "--field-of-view"] {
