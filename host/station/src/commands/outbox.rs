@@ -117,8 +117,8 @@ fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<
         return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
     }
     let mut store = at_station(folder, &why.operator, &format!("outbox again {sink}"))?;
-    let again = store.send_again(sink, why.by())?;
     let unsent = Snapshot::take(folder)?.unsent()?;
+    let again = store.send_again(sink, why.by())?;
     let dead = unsent.into_iter().find(|unsent| unsent.sink == sink).map_or(0, |unsent| unsent.dead);
     let rest = match dead {
         0 => String::new(),

@@ -93,13 +93,13 @@ impl AtWork {
         while threads.iter().any(|thread| !thread.is_finished()) {
             inbox.recv_timeout(LOOK_AT_END).into_iter().for_each(|input| self.told_of_hook(input));
         }
+        inbox.try_iter().for_each(|input| self.told_of_hook(input));
         for thread in threads {
             if thread.join().is_err() {
                 tracing::error!("a thread of a lane ended early; look at what it said before");
             }
         }
         labgrid::wait_until_left(self.shared.settings.lanes.iter().map(|lane| &lane.board));
-        inbox.try_iter().for_each(|input| self.told_of_hook(input));
     }
 
     /// Takes what a hook reports while nothing else counts any more.

@@ -89,11 +89,11 @@ impl<W: Write> Table<W> {
             self.lines(&run, &OF_STEP.map(|(_, cell)| cell(step)), &step.measurements)?;
         }
         // Those of the run as a whole have the step 0, as in the store.
-        let whole = ["0", "1", "run", "", "", "", ""].map(str::to_owned);
+        let whole: [&str; OF_STEP.len()] = ["0", "1", "run", "", "", "", ""];
         if record.measurements.is_empty() && !record.steps.is_empty() {
             return Ok(());
         }
-        self.lines(&run, &whole, &record.measurements)
+        self.lines(&run, &whole.map(str::to_owned), &record.measurements)
     }
 
     /// Returns what it was written to.
