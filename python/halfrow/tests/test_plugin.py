@@ -178,6 +178,29 @@ def test_it(halfrow_board, subtests):
     assert [place.rsplit("/", 1)[1] for place in named(result)] == ["0", "1"], result.outlines
 
 
+def test_reports_of_an_earlier_run_are_removed_by_the_session_that_hands_tests_out(pytester):
+    """As that of pytest-xdist does, which collects no tests. Before pytest 7 such a session has no list of them either."""
+    pytester.makeconftest("""
+class Controller:
+    def pytest_collection(self, session):
+        vars(session).pop("items", None)
+        return True
+
+    def pytest_runtestloop(self):
+        return True
+
+def pytest_configure(config):
+    config.pluginmanager.register(Controller(), "dsession")
+""")
+    earlier = pytester.path / "kept/a-test/0/report.json"
+    earlier.parent.mkdir(parents=True)
+    earlier.touch()
+    (pytester.path / "kept/.halfrow-kept").write_text("a-test\n")
+    result = pytester.runpytest_subprocess(*FAILING)
+    assert result.ret == pytest.ExitCode.NO_TESTS_COLLECTED, result.outlines
+    assert not earlier.exists()
+
+
 def test_the_options_are_explained(pytester):
     result = pytester.runpytest_subprocess("--help")
     result.stdout.fnmatch_lines(["*--halfrow-board=TARGET*", "*--halfrow-report=FOLDER*"])

@@ -136,10 +136,11 @@ def pytest_runtestloop(session: pytest.Session) -> None:
     # When a worker of pytest-xdist begins, others may already have kept reports.
     if folder is None or hasattr(config, "workerinput"):
         return
-    # No test is run then. That of pytest-xdist which hands tests out has collected none itself.
+    # No test is run then.
     if session.testsfailed and not config.getoption("continue_on_collection_errors", False):
         return
-    if not session.items and not config.pluginmanager.hasplugin("dsession"):
+    # The session of pytest-xdist which hands tests out has collected none itself, and before pytest 7 has no list of them.
+    if not config.pluginmanager.hasplugin("dsession") and not session.items:
         return
     try:
         folder.begin()
