@@ -167,15 +167,28 @@ def test_it(halfrow_board):
     assert not kept(pytester)
 
 
-def test_a_subtest_that_fails_shows_its_own_reports(pytester):
-    pytester.makepyfile(SMALL + """
+@pytest.mark.skipif(not hasattr(pytest, "Subtests"), reason="pytest has no subtests before version 9")
+@pytest.mark.parametrize(
+    "judging, shown",
+    [
+        # The second subtest passes, and its report is left to the test, which fails after its subtests.
+        ("judged(halfrow_board, seed=seed) or seed == 2", ["0", "2", "1", "3"]),
+        # A report from before the subtests is about whichever fails.
+        ("passed or seed != 2", ["0", "1"]),
+    ],
+    ids=["judged_by_each", "judged_before"],
+)
+def test_a_subtest_that_fails_shows_its_own_reports(pytester, judging, shown):
+    pytester.makepyfile(SMALL + f"""
 def test_it(halfrow_board, subtests):
-    for seed in (1, 2):
+    passed = {"passed" in judging} and judged(halfrow_board)
+    for seed in (1, 2, 3):
         with subtests.test(seed=seed):
-            assert judged(halfrow_board, seed=seed)
+            assert {judging}
+    assert judged(halfrow_board)
 """)
     result = pytester.runpytest_subprocess(*FAILING)
-    assert [place.rsplit("/", 1)[1] for place in named(result)] == ["0", "1"], result.outlines
+    assert [place.rsplit("/", 1)[1] for place in named(result)] == shown, result.outlines
 
 
 def test_reports_of_an_earlier_run_are_removed_by_the_session_that_hands_tests_out(pytester):

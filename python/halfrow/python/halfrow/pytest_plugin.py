@@ -12,7 +12,7 @@ import contextlib
 import hashlib
 import pathlib
 import re
-from typing import Any, Dict, Generator, List, Optional
+from typing import Any, Dict, Generator, List, Optional, Set
 
 import pytest
 
@@ -21,7 +21,7 @@ from . import HalfrowError, Report, verify
 # Attributes of tests and of the configuration. Before pytest 7 neither has a stash, and a plugin that cannot be imported would
 # end every run, also of those who do not use it.
 _REPORTS = "_halfrow_reports"
-_TOLD = "_halfrow_told"
+_PHASES = "_halfrow_phases"
 _FOLDER = "_halfrow_folder"
 # The files of a report.
 _FILES = ("report.html", "report.json", "report.xml")
@@ -50,6 +50,26 @@ class JudgedBoard:
             raise
         self.reports.append(report)
         return report
+
+
+class _Phase:
+    """Which reports a phase of a test has shown. Each of its subtests ends and fails by itself, and the test itself ends last."""
+
+    def __init__(self) -> None:
+        self.ended = 0
+        self.shown: Set[int] = set()
+
+    def shows(self, failed: bool, count: int) -> List[int]:
+        """Which of so many reports the test or subtest shows that has just ended."""
+        left = [number for number in range(count) if number not in self.shown]
+        own = [number for number in left if number >= self.ended]
+        self.ended = count
+        if not failed:
+            return []
+        # A subtest that has judged nothing itself is about what was judged before it.
+        numbers = own or left
+        self.shown.update(numbers)
+        return numbers
 
 
 class _Folder:
@@ -157,22 +177,27 @@ def halfrow_board(request: pytest.FixtureRequest) -> JudgedBoard:
     # A test that is tried again begins without reports.
     reports: List[Report] = []
     setattr(request.node, _REPORTS, reports)
-    setattr(request.node, _TOLD, {})
+    setattr(request.node, _PHASES, {})
     return JudgedBoard(request.config.getoption("--halfrow-board"), reports)
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, None, None]:
+    yield
+    # The test itself ends next, and what its subtests have not shown is its own.
+    phases: Dict[str, _Phase] = getattr(item, _PHASES, {})
+    phases.setdefault("call", _Phase()).ended = 0
 
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, None]:
     outcome = yield
     told = outcome.get_result()
-    if not told.failed:
-        return
-    folder = _folder_of(item.config)
     reports: List[Report] = getattr(item, _REPORTS, [])
-    # Each subtest of a phase fails by itself, and reports that were told of an earlier one are not its own.
-    is_told: Dict[str, int] = getattr(item, _TOLD, {})
-    first = is_told.get(told.when, 0)
-    is_told[told.when] = len(reports)
-    for number, report in enumerate(reports[first:], first):
+    phases: Dict[str, _Phase] = getattr(item, _PHASES, {})
+    numbers = phases.setdefault(told.when, _Phase()).shows(told.failed, len(reports))
+    folder = _folder_of(item.config)
+    for number in numbers:
+        report = reports[number]
         kept = "" if folder is None else folder.keep(item, number, report)
         told.sections.append((f"halfrow: {report.verdict} of {report.board.target}", report.text + kept))
