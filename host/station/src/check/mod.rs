@@ -58,7 +58,11 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
 /// What the database refuses is no error where it is damaged: that was told, and hides nothing else.
 fn unless_damaged(is_damaged: bool, looked: Result<(), StoreError>) -> Result<(), StoreError> {
     match looked {
-        Err(StoreError::Database { .. } | StoreError::Locked { .. } | StoreError::Damaged { .. }) if is_damaged => Ok(()),
+        Err(StoreError::Database { .. } | StoreError::Locked { .. } | StoreError::Damaged { .. })
+            if is_damaged =>
+        {
+            Ok(())
+        }
         looked => looked,
     }
 }
