@@ -255,6 +255,8 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
         ("stuck-address,bit=11", "the ring has no address line bit=11; give one from 0 to 10"),
         ("stale-table,table-banks=1", "the wrong one of two banks of tables; give table-banks=2"),
         ("slow-path,bursts=no", "leave bursts=no out"),
+        // Such a board makes no frame.
+        ("lost-row,row=16,bursts=no", "there is no row=16 in frames of 16 rows"),
         // One frame and two of noise with these tables: 32 rows are played before row 3 of the last frame.
         ("drifting-table,after=36", "give 35 at most, or stream more frames"),
     ] {
@@ -289,6 +291,12 @@ fn a_fault_at_speed_is_refused_where_no_frame_at_speed_is_judged() {
             "it strikes in frames that the board makes at full speed, and there are none",
         );
     }
+    // The rules' tallest frame has 1023 rows: ten bits, all set.
+    let tall = ["verify", "--width", "128", "--height", "1200", "--radius", "700", "--at-speed", "0"];
+    let told = [&tall[..], &["--board", "mock,fault=hidden-pause,row=1100"]].concat();
+    refused(&folder, &told, "there is no row=1100 in frames of 1023 rows");
+    let untrapped = ["--at-speed", "0", "--board", "mock,fault=lost-row,row=16,bursts=untrapped"];
+    refused(&folder, &small("verify", &untrapped), "there is no row=16 in frames of 16 rows");
 }
 
 /// With a grid the fault's row is the number of an entry, of which there are more than rows.

@@ -4,10 +4,6 @@ use super::BoardFault;
 use crate::core::Weight;
 use crate::options::{BurstBuild, OptionError, Options, TapCount};
 
-/// Rows of the frames that are streamed for the wire's rules, and of those among them that are as wide as the board takes.
-const OF_RULES: u16 = 4;
-const OF_RULES_WIDE: u16 = 2;
-
 /// What a board is given with one generation of tables, and what it makes besides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Streamed {
@@ -21,33 +17,42 @@ pub struct Streamed {
     pub frames: usize,
     /// Whether the board then makes frames of its own, to be judged at speed.
     pub at_speed: bool,
-    /// Whether the wire's rules are then tried.
-    pub rules: bool,
+    /// Rows of the frames that are then streamed for the wire's rules, and of those among them that are as wide as the board
+    /// takes; none if the rules are not tried.
+    pub of_rules: Option<(usize, usize)>,
     /// Rows of the tallest frame that the board makes of its own, at speed or for the rules; none if it makes none.
     pub made: Option<usize>,
 }
 
 impl BoardFault {
     /// Why the fault changes nothing when a board of this `build` plays the frames of `streamed`, and what would make it take
-    /// effect; none when it may change something.
+    /// effect; none when it may change something, or when the build lacks the part that the fault breaks.
     #[must_use]
     pub fn without_effect(&self, streamed: &Streamed, build: &Options) -> Option<String> {
         match *self {
+            // Such a board is refused with the option that takes the part away.
+            _ if self.check_part(build).is_err() => None,
             // The rules have entries of every row written and read.
-            Self::RowFactor { row, hidden: false, .. } if streamed.rules && row < build.max_height => None,
+            Self::RowFactor { row, hidden: false, .. }
+                if streamed.of_rules.is_some() && row < build.max_height =>
+            {
+                None
+            }
             Self::RowFactor { row, .. } => streamed.lacks_entry(row),
             Self::DriftingTable { after, row, .. } => {
                 streamed.lacks_entry(row).or_else(|| streamed.ends_before(after, row))
             }
             Self::LostRow { row } => streamed.lacks_row(row),
             Self::SpoiltRow { row, column, .. } => {
-                let of_rules = |rows| streamed.rules && row < rows;
-                let lacks_row = || lacks(row, streamed.height).filter(|_| !of_rules(OF_RULES));
-                let lacks_column = || streamed.lacks_column(column?).filter(|_| !of_rules(OF_RULES_WIDE));
+                let (small, wide) = streamed.of_rules.unwrap_or_default();
+                let beyond = |rows| usize::from(row) >= rows;
+                let lacks_row = || lacks(row, streamed.height).filter(|_| beyond(small));
+                let lacks_column = || streamed.lacks_column(column?).filter(|_| beyond(wide));
                 lacks_row().or_else(lacks_column)
             }
             Self::WarmBit { row, .. } | Self::HiddenPause { row } => {
-                Streamed::lacks_speed(streamed.made.is_some()).or_else(|| streamed.lacks_row(row))
+                let rows = streamed.made.unwrap_or(0);
+                Streamed::lacks_speed(streamed.made.is_some()).or_else(|| lacks(row, rows))
             }
             Self::SlowPath { .. } => Streamed::lacks_speed(streamed.made.is_some()),
             Self::LateSwap | Self::WrongClockClaim => Streamed::lacks_speed(streamed.at_speed),

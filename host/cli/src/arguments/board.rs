@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Arg, Args};
 
-use halfrow_mock::{Options, Streamed};
+use halfrow_mock::{BurstBuild, Options, Streamed};
 use halfrow_program::number::{any, number};
 
 use super::judging::time_limit;
@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::pool::{self, POOL};
 use crate::settings::Settings;
 use crate::signals;
-use halfrow::board::{BoardNature, Capabilities, OpenOptions, RetryLimit, Stop, WhenHeld};
+use halfrow::board::{BoardNature, Bursts, Capabilities, OpenOptions, RetryLimit, Stop, WhenHeld};
 use halfrow::call::Files;
 use halfrow::link::{self, Candidate, Recording, kinds};
 use halfrow::run::{AtSpeed, Build, JUDGED, Plan, usual_capabilities};
@@ -90,8 +90,9 @@ pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
     let grid = tables.shape().map(|_| tables.entries().len());
     let (width, height) = (tables.geometry().width(), tables.geometry().height());
     let at_speed = plan.at_speed != AtSpeed::Off;
-    let (rules, made) = (plan.tries_rules(), plan.tallest_made(&mock_capabilities(&build, plan)));
-    let streamed = Streamed { width, height, grid, frames, at_speed, rules, made };
+    let capabilities = mock_capabilities(&build, plan);
+    let (made, of_rules) = (plan.tallest_made(&capabilities), plan.rows_of_rules(&capabilities));
+    let streamed = Streamed { width, height, grid, frames, at_speed, of_rules, made };
     match fault.without_effect(&streamed, &build) {
         None => Ok(()),
         Some(why) => Err(wrong_board(Failure::call(CallError::FaultWithoutEffect {
@@ -104,8 +105,10 @@ pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
 /// What the size of frames that a mock board makes depends on.
 fn mock_capabilities(build: &Options, plan: &Plan) -> Capabilities {
     let usual = usual_capabilities(plan, BoardNature::Mock);
-    let Options { max_width, max_height, .. } = *build;
-    Capabilities { max_width, max_height, ring: build.ring_size(), ..usual }
+    let Options { max_width, max_height, bursts: made, .. } = *build;
+    let bursts = usual.bursts.filter(|_| made != BurstBuild::None);
+    let bursts = bursts.map(|bursts| Bursts { trap: made == BurstBuild::Trapped, ..bursts });
+    Capabilities { max_width, max_height, ring: build.ring_size(), bursts, ..usual }
 }
 
 /// `failure`, attributed to the value of `--board`.

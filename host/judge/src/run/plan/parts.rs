@@ -10,7 +10,7 @@ use super::variations::Build;
 use super::{AtSpeed, FrameSource, Plan, ScheduledFrame, Segment};
 use crate::board::Capabilities;
 use crate::run::at_speed::{FEW_AT_SPEED, known_bursts, tallest_corner};
-use crate::run::rules::tallest_of_rules;
+use crate::run::rules::{rows_of_rules, tallest_of_rules};
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -206,9 +206,15 @@ impl Plan {
     }
 
     /// Whether the rules are tried; a soak never does.
-    #[must_use]
-    pub fn tries_rules(&self) -> bool {
+    pub(crate) fn tries_rules(&self) -> bool {
         self.at_speed.soak().is_none() && self.amount(Part::Rules) > 0
+    }
+
+    /// Rows of the frames that a board with `capabilities` is given for the rules, and of those among them that are as wide as
+    /// it takes; none if the rules are not tried.
+    #[must_use]
+    pub fn rows_of_rules(&self, capabilities: &Capabilities) -> Option<(usize, usize)> {
+        self.tries_rules().then(|| rows_of_rules(capabilities))
     }
 
     /// Rows of the tallest frame that a board with `capabilities` makes of its own, at speed or for the rules; none if it makes

@@ -52,6 +52,12 @@ pub(super) use waiting::MOST_FILLED;
 /// The first row factor of the shadow bank.
 const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
 
+/// Rows of the frames that a board is given for the rules, and of those among them that are as wide as it takes.
+pub(super) fn rows_of_rules(capabilities: &Capabilities) -> (usize, usize) {
+    let most = usize::from(capabilities.max_height);
+    (small::ROWS.min(most), wide::ROWS.min(most))
+}
+
 impl Run<'_> {
     /// Tries the rules. If the board goes away meanwhile, it is brought back to where it was after `last`.
     pub(super) fn rules(&mut self, last: Option<&Segment>) -> Result<(), End> {

@@ -18,7 +18,7 @@ const GENERATION: u8 = 0x69;
 /// Their frame.
 const FRAME: u16 = 0xcba9;
 /// Two rows, so that the second pushes the first out.
-const ROWS: usize = 2;
+pub(super) const ROWS: usize = 2;
 
 impl Rules<'_, '_> {
     pub(super) fn wide(&mut self) -> Result<(), End> {
