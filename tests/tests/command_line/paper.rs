@@ -186,9 +186,11 @@ fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
     assert_eq!(made_of["items"][0]["claims"][0]["found"], 8.2);
     let (_, said) = made(&folder, 3, &["resources", "--overwrite", "--synthesis", "large.json"]);
     assert!(said.contains("MISSED"), "{said}");
-    folder.write("bad.json", "{}");
-    let call = ["paper", "fig5", "resources", "-o", "new", "--synthesis", "bad.json"];
-    refused(&folder, &call, "make it anew");
+    for bad in ["{}", "null"] {
+        folder.write("bad.json", bad);
+        let call = ["paper", "fig5", "resources", "-o", "new", "--synthesis", "bad.json"];
+        refused(&folder, &call, "make it anew");
+    }
     assert!(!folder.path().join("new").exists(), "it was noticed once the folder was made");
 }
 

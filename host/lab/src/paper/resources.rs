@@ -56,7 +56,11 @@ impl Synthesis {
     pub fn read(path: &Path) -> Result<Self, PaperError> {
         let wrong = |source| PaperError::Synthesis { path: path.to_owned(), source };
         let report = match text::read(path, text::MAX_BYTES) {
-            Ok(text) => serde_json::from_str(&text).map_err(|source| wrong(source.into()))?,
+            Ok(text) => {
+                // An `Option` would take `null` for a report that is not there.
+                let report = serde_json::from_str::<Report>(&text);
+                Some(report.map_err(|source| wrong(source.into()))?)
+            }
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
             Err(source) => return Err(wrong(source)),
         };
