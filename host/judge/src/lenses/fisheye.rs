@@ -91,17 +91,19 @@ fn check_model(keys: &Keys<'_>) -> Result<(), LensContentError> {
 
 /// fx, skew, cx, fy and cy.
 fn matrix(keys: &Keys<'_>) -> Result<[f64; 5], LensContentError> {
-    let Some((second, four)) = keys.find(&FOUR_INTRINSICS) else { return Ok(nine(keys)?.1) };
-    let [fx, fy, cx, cy] = numbers(second, four)?[..] else { return Err(LensContentError::Matrix) };
+    let Some((second, said)) = keys.find(&FOUR_INTRINSICS) else { return Ok(nine(keys)?.1) };
+    let said = numbers(second, said)?;
     if keys.find(&MATRIX).is_none() {
+        let [fx, fy, cx, cy] = said[..] else { return Err(LensContentError::Matrix) };
         return Ok([fx, 0.0, cx, fy, cy]);
     }
     let (first, found) = nine(keys)?;
-    let [of_nine_fx, _, of_nine_cx, of_nine_fy, of_nine_cy] = found;
-    if [of_nine_fx, of_nine_fy, of_nine_cx, of_nine_cy] != [fx, fy, cx, cy] {
-        return Err(LensContentError::Twice { first: quoted(first), second: quoted(second) });
+    let [fx, skew, cx, fy, cy] = found;
+    if said == [fx, fy, cx, cy] || said == [fx, skew, cx, 0.0, fy, cy, 0.0, 0.0, 1.0] {
+        Ok(found)
+    } else {
+        Err(LensContentError::Twice { first: quoted(first), second: quoted(second) })
     }
-    Ok(found)
 }
 
 /// The key of the camera matrix, and its fx, skew, cx, fy and cy.

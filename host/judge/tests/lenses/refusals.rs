@@ -157,11 +157,18 @@ fn several_cameras_are_refused() {
 
 #[test]
 fn a_matrix_and_four_numbers_must_say_the_same() {
-    let both =
-        |cx: f64| format!("{CAMCHAIN}  camera_matrix: [552.25, 0, {cx}, 0, 549.125, 358.25, 0, 0, 1]\n");
-    assert_eq!(LensFile::parse(&both(641.5)), LensFile::parse(CAMCHAIN));
+    let matrix = |cx: f64| format!("[552.25, 0, {cx}, 0, 549.125, 358.25, 0, 0, 1]");
+    let both = |cx: f64| format!("{CAMCHAIN}  camera_matrix: {}\n", matrix(cx));
+    let four = "[552.25, 549.125, 641.5, 358.25]";
+    let nine = |cx: f64| with(&both(641.5), four, &matrix(cx));
+    for same in [both(641.5), nine(641.5)] {
+        assert_eq!(LensFile::parse(&same), LensFile::parse(CAMCHAIN));
+    }
     let (first, second) = ("camera_matrix".to_owned(), "intrinsics".to_owned());
-    assert_eq!(refusal(&both(600.0)), LensContentError::Twice { first, second });
+    let twice = LensContentError::Twice { first, second };
+    for other in [both(600.0), nine(600.0), with(&both(641.5), four, "[552.25, 641.5, 358.25]")] {
+        assert_eq!(refusal(&other), twice);
+    }
 }
 
 #[test]
