@@ -180,9 +180,20 @@ fn a_grid_that_is_worse_than_fitted_rows_is_warned_of() {
         let lens = ["--width", "128", "--height", "128", "--radius", "128", "--centre-y", "127"];
         let told = Folder::new()
             .halfrow([&["lens", "--projection", "exact", "--centre-x", column], &lens[..]].concat());
-        let warned = told.stdout.contains("farther off here than fitted rows");
+        let warned =
+            told.stdout.contains("no better grid of 2048 entries or fewer that a board takes was found");
         assert_eq!((told.code, warned), (Some(0), is_worse), "{}", told.stdout);
     }
+}
+
+#[test]
+fn a_grid_that_is_worse_for_its_few_entries_is_warned_of_with_their_number() {
+    let exact = ["lens", "--projection", "exact", "--entries", "120", "--nodes-every", "64"];
+    let size = ["--width", "640", "--height", "480", "--radius", "150"];
+    let told = Folder::new().halfrow([&exact[..], &size].concat());
+    let sentence = "no better grid of 120 entries or fewer, with a node every 64 columns, that a board takes was \
+                    found, so use --rows fitted in place of --projection exact";
+    assert!(told.stdout.contains(sentence), "{}{}", told.stdout, told.stderr);
 }
 
 /// By hand: r = θ − 0.2 · θ³ turns back at √(5/3), 73.97 degrees.

@@ -187,17 +187,19 @@ impl<'a> Figures<'a> {
         })
     }
 
-    /// A line for a grid that is visibly worse than factors of rows, since no ring serves a better one.
+    /// A line for a grid that is visibly worse than factors of rows.
     fn warning(&self) -> Option<String> {
-        let inner = |is_wanted: fn(TablesBy) -> bool| {
-            self.all.iter().find(|left| is_wanted(left.by)).map(|left| left.residuals.inner)
-        };
-        let exact = inner(|by| matches!(by, TablesBy::Exact { .. }))?;
-        let fitted = inner(|by| by == TablesBy::Fitting)?;
+        let fitted = self.all.iter().find(|left| left.by == TablesBy::Fitting)?.residuals.inner;
+        let (exact, entries, k) = self.all.iter().find_map(|left| match left.by {
+            TablesBy::Exact { entries, k } => Some((left.residuals.inner, entries, k)),
+            _ => None,
+        })?;
+        let nodes = k.map_or_else(String::new, |k| format!(", with a node every {} columns,", 1 << k));
         (exact.visible > 0.0 && exact.amounts.max > fitted.amounts.max).then(|| {
-            "The exact projection is farther off here than fitted rows: no better grid that a board takes was found, so use \
-             fitted rows (--rows fitted)."
-                .to_owned()
+            format!(
+                "The exact projection is farther off here than fitted rows: no better grid of {entries} entries or fewer{nodes} \
+                 that a board takes was found, so use --rows fitted in place of --projection exact."
+            )
         })
     }
 
