@@ -53,7 +53,8 @@ impl Camera {
 
     /// The grid of at most `entries` entries with the least largest error in the inner part of the picture, preferably one that
     /// the smallest ring for this width can serve: another one only if it is more than 0.05 columns nearer. If no ring can serve
-    /// any, it is the one that would have the least error with a ring that could.
+    /// any, it is the one that would have the least error with a ring that could. Of the grids of more than 8192 entries only the
+    /// best by closed form is considered, unfitted.
     ///
     /// # Errors
     /// [`GridRoomError`] when every grid has more entries.
