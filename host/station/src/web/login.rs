@@ -10,7 +10,8 @@ use maud::{Markup, html};
 use serde::Deserialize;
 
 use super::access::{Claimant, Identified};
-use super::language;
+use super::history::show;
+use super::language::{self, Sentence};
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, act, is_page, look};
 use super::state::App;
@@ -34,21 +35,20 @@ pub(super) fn routes() -> Vec<Route> {
 }
 
 async fn page(visit: Visit) -> Response {
-    Page {
-        here: Here::Elsewhere,
-        title: visit.say("login.title"),
-        head: html! {},
-        content: form(&visit, None),
-    }
-    .answer(&visit)
+    asked(&visit, None).answer(&visit)
 }
 
-/// The form, below why the last login was refused.
-fn form(visit: &Visit, refused: Option<&str>) -> Markup {
+/// The page that asks for a badge, below why the last one was refused.
+pub(super) fn asked(visit: &Visit, refused: Option<&Sentence>) -> Page<'static> {
+    let title = visit.say("login.title");
+    Page { here: Here::Elsewhere, title, head: html! {}, content: form(visit, refused) }
+}
+
+fn form(visit: &Visit, refused: Option<&Sentence>) -> Markup {
     html! {
         section.login {
             h1 { (visit.say("login.title")) }
-            @if let Some(refused) = refused { p.refused role="alert" { (refused) } }
+            @if let Some(refused) = refused { p.refused role="alert" { (show::told(refused)) } }
             form method="post" action="/login" autocomplete="off" {
                 input type="hidden" name="csrf" value=(visit.csrf);
                 label { (visit.say("login.badge")) input type="password" name="badge" required autofocus maxlength="200"; }
@@ -74,12 +74,9 @@ async fn log_in(
     Form(Login { badge, password }): Form<Login>,
 ) -> Result<Response, Trouble> {
     let badge = app.settings().scanner.label(&badge).map(str::to_owned).unwrap_or(badge);
-    let known = identified(&app, &visit, Claimant::Stranger(peer), (badge, password)).await?;
-    let Some(known) = known else {
-        let (title, content) = (visit.say("login.title"), form(&visit, Some(visit.say("login.refused"))));
-        let page = Page { here: Here::Elsewhere, title, head: html! {}, content };
-        return Ok(page.with_status(&visit, StatusCode::FORBIDDEN));
-    };
+    let refused = || Trouble::new(&visit, StatusCode::FORBIDDEN, visit.say("login.refused"));
+    let known = identified(&app, &visit, Claimant::Stranger(peer), (badge, password)).await;
+    let known = known.and_then(|known| known.ok_or_else(refused)).map_err(Trouble::at_login)?;
     let cookie = logged_in(&app, &visit, known).await?;
     Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
 }

@@ -103,15 +103,20 @@ pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next
     match checked {
         Err(refused) => *refused,
         Ok(mut request) => {
-            let cookie = (visit.is_new && !is_act).then(|| app.access().cookie(&visit.session));
+            let cookie = if is_act { None } else { new_cookie(&app, &visit) };
             request.extensions_mut().insert(visit);
             let mut response = next.run(request).await;
-            if let Some(cookie) = cookie.and_then(|cookie| HeaderValue::from_str(&cookie).ok()) {
+            if let Some(cookie) = cookie {
                 response.headers_mut().insert(header::SET_COOKIE, cookie);
             }
             response
         }
     }
+}
+
+/// The cookie that a visitor without one is given.
+fn new_cookie(app: &App, visit: &Visit) -> Option<HeaderValue> {
+    visit.is_new.then(|| HeaderValue::from_str(&app.access().cookie(&visit.session)).ok()).flatten()
 }
 
 /// A refusal on the way to a route.
@@ -196,7 +201,8 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
     if app.is_ending() {
         return Err(refused(visit, StatusCode::SERVICE_UNAVAILABLE, visit.say("trouble.ending")));
     }
-    let unmarked = || Box::new(Trouble::stale(visit).into_response());
+    let is_login = request.uri().path() == "/login";
+    let unmarked = || if is_login { login_anew(app, visit) } else { troubled(Trouble::stale(visit)) };
     if visit.is_new {
         return Err(unmarked());
     }
@@ -208,6 +214,16 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
         return Err(unmarked());
     }
     Ok(Request::from_parts(parts, Body::from(body)))
+}
+
+/// The answer to a login with a form that was made for another cookie: a form for the cookie that the visitor has, or is given.
+fn login_anew(app: &App, visit: &Visit) -> RefusedRequest {
+    let stale = Trouble::new(visit, StatusCode::FORBIDDEN, visit.say("login.stale")).at_login();
+    let mut response = stale.into_response();
+    if let Some(cookie) = new_cookie(app, visit) {
+        response.headers_mut().insert(header::SET_COOKIE, cookie);
+    }
+    Box::new(response)
 }
 
 /// The mark that a form carries.

@@ -12,6 +12,7 @@ use serde_json::json;
 use super::history::show;
 use super::language::Sentence;
 use super::layout::{Here, Page};
+use super::login;
 use super::routes::Who;
 use super::visit::Visit;
 use crate::said::Said;
@@ -26,13 +27,14 @@ pub(super) struct Trouble {
     told: Sentence,
     /// Whether the page that asked has to be loaded anew first.
     is_stale: bool,
+    /// Whether a login was refused.
+    is_login: bool,
 }
 
 impl Trouble {
     /// What is wrong and what to do, with its status.
     pub(super) fn new(visit: &Visit, status: StatusCode, said: impl Into<String>) -> Self {
-        let told = Sentence { text: said.into(), foreign: None };
-        Self { status, visit: Box::new(visit.clone()), told, is_stale: false }
+        Self::saying(visit, status, Sentence { text: said.into(), foreign: None })
     }
 
     /// The form is not for whoever sends it.
@@ -42,7 +44,16 @@ impl Trouble {
 
     /// What has a code, in the visitor's language.
     pub(super) fn telling(visit: &Visit, status: StatusCode, said: &Said) -> Self {
-        Self { status, visit: Box::new(visit.clone()), told: visit.words.tell(said), is_stale: false }
+        Self::saying(visit, status, visit.words.tell(said))
+    }
+
+    fn saying(visit: &Visit, status: StatusCode, told: Sentence) -> Self {
+        Self { status, visit: Box::new(visit.clone()), told, is_stale: false, is_login: false }
+    }
+
+    /// The same as the answer to a login, on the page that takes the next badge: a scanner has no way back.
+    pub(super) fn at_login(self) -> Self {
+        Self { is_login: true, ..self }
     }
 
     /// The visitor may not do this.
@@ -97,10 +108,13 @@ impl Trouble {
 
 impl IntoResponse for Trouble {
     fn into_response(self) -> Response {
-        let Self { status, visit, told, is_stale } = self;
+        let Self { status, visit, told, is_stale, is_login } = self;
         if visit.is_script {
             let text = json!({ "is_taken": false, "said": told.text, "is_stale": is_stale }).to_string();
             return (status, [(CONTENT_TYPE, "application/json")], text).into_response();
+        }
+        if is_login {
+            return login::asked(&visit, Some(&told)).with_status(&visit, status);
         }
         let content =
             html! { section.trouble { h1 { (status.as_u16()) } p role="alert" { (show::told(&told)) } } };

@@ -122,6 +122,23 @@ fn a_page_asked_for_by_a_stranger_leads_to_the_login() {
     assert_eq!((answer.status, answer.headers["location"].as_str()), (303, "/login"));
 }
 
+/// A login page may be older than the browser's cookie, and a scanner cannot load it again.
+#[test]
+fn a_login_that_was_made_for_another_cookie_is_answered_with_a_form_that_logs_in() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let other = serving.browser(PUBLIC).cookie;
+    for cookie in [other, String::new()] {
+        let mut browser = serving.browser(PUBLIC);
+        browser.cookie = cookie;
+        let login = |browser: &Browser| browser.post("/login", &[("badge", "A-0017")]).send();
+        let refused = login(&browser);
+        assert!(refused.status == 403 && refused.text().contains("name=\"badge\""), "{refused:?}");
+        browser.learn(&refused);
+        assert_eq!(login(&browser).status, 303, "{refused:?}");
+    }
+}
+
 /// A page that an act has answered is asked for again by its address, as by Enter in the address bar.
 #[test]
 fn whoever_looks_where_acts_are_sent_is_led_to_the_first_page() {
