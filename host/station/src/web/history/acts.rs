@@ -24,25 +24,25 @@ const DEVICE: &str = "[0-9a-f]{16}";
 
 /// Why an act was refused, for the page on which it was asked for, and what was typed there.
 #[derive(Debug)]
-pub(super) struct RefusedAct {
-    pub(super) status: StatusCode,
+pub(in crate::web) struct RefusedAct<Typed> {
+    pub(in crate::web) status: StatusCode,
     code: String,
     told: Sentence,
-    typed: Rebind,
+    pub(in crate::web) typed: Typed,
 }
 
-impl RefusedAct {
-    fn new(visit: &Visit, (status, said): (StatusCode, &Said), typed: Rebind) -> Self {
+impl<Typed> RefusedAct<Typed> {
+    pub(in crate::web) fn new(visit: &Visit, (status, said): (StatusCode, &Said), typed: Typed) -> Self {
         Self { status, code: said.code.clone(), told: visit.words.tell(said), typed }
     }
 
     /// The reason with its code.
-    pub(super) fn markup(&self) -> Markup {
+    pub(in crate::web) fn markup(&self) -> Markup {
         html! { p.refused role="alert" { (show::told(&self.told)) " " code { (self.code) } } }
     }
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 pub(super) struct Waive {
     #[serde(default)]
     reason: String,
@@ -52,11 +52,10 @@ pub(super) async fn waive(
     State(app): State<App>,
     visit: Visit,
     Path(id): Path<String>,
-    Form(Waive { reason }): Form<Waive>,
+    Form(typed): Form<Waive>,
 ) -> Result<Response, Trouble> {
     let (run, name) = (id.clone(), visit.name().to_owned());
-    let typed = Rebind { reason: reason.clone(), ..Rebind::default() };
-    let (status, said) = match Reason::of(&reason) {
+    let (status, said) = match Reason::of(&typed.reason) {
         Ok(reason) => match app.change(&visit, move |store| store.waive(&run, &name, &reason)).await? {
             Ok(_) => return Ok(Redirect::to(&show::run_address(&id)).into_response()),
             Err(error) => (not_waived(&error), Said::of(&error)),
@@ -121,7 +120,7 @@ const fn not_rebound(error: &RebindError) -> StatusCode {
 }
 
 /// The form by which an engineer waives the FAIL of a run that has no waiver.
-pub(super) fn waive_form(visit: &Visit, run: &UnitRun, refused: Option<&RefusedAct>) -> Markup {
+pub(super) fn waive_form(visit: &Visit, run: &UnitRun, refused: Option<&RefusedAct<Waive>>) -> Markup {
     let is_open = run.line.verdict == Some(Verdict::Fail) && run.waivers.is_empty();
     html! {
         @if is_open && visit.may(Who::Engineer) {
@@ -137,7 +136,7 @@ pub(super) fn waive_form(visit: &Visit, run: &UnitRun, refused: Option<&RefusedA
 
 /// The form by which an engineer says which device a unit has from then on. After a refusal it is as it was sent: an empty device
 /// would ask for something else.
-pub(super) fn rebind_form(visit: &Visit, unit: &Unit, refused: Option<&RefusedAct>) -> Markup {
+pub(super) fn rebind_form(visit: &Visit, unit: &Unit, refused: Option<&RefusedAct<Rebind>>) -> Markup {
     let typed = refused.map(|refused| &refused.typed).filter(|typed| typed.product == unit.product);
     let (device, reason) = typed.map_or(("", ""), |typed| (&typed.device, &typed.reason));
     html! {

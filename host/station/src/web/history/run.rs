@@ -11,7 +11,7 @@ use maud::{Markup, html};
 use serde::Deserialize as _;
 use serde_json::Value;
 
-use super::acts::RefusedAct;
+use super::acts::{RefusedAct, Waive};
 use super::run_filter::unit_address;
 use super::{acts, pictures, show};
 use crate::export::Format;
@@ -45,7 +45,7 @@ pub(super) async fn shown(
     app: App,
     visit: Visit,
     id: String,
-    refused: Option<RefusedAct>,
+    refused: Option<RefusedAct<Waive>>,
 ) -> Result<Response, Trouble> {
     let look = move |now: &Snapshot| {
         let Some(mut run) = history::run_of(now, &id)? else { return Ok(None) };
@@ -70,7 +70,11 @@ pub(super) async fn shown(
     Ok(Page { here: Here::History, title: &title, head: show::head(), content }.with_status(&visit, status))
 }
 
-fn content(visit: &Visit, Found { run, record, kept }: &Found, refused: Option<&RefusedAct>) -> Markup {
+fn content(
+    visit: &Visit,
+    Found { run, record, kept }: &Found,
+    refused: Option<&RefusedAct<Waive>>,
+) -> Markup {
     let line = &run.line;
     let read = record.as_ref().and_then(|record| record.as_ref().ok());
     html! {

@@ -7,7 +7,7 @@ use halfrow::Verdict;
 use halfrow::words::plain;
 use maud::{Markup, html};
 
-use super::acts::RefusedAct;
+use super::acts::{Rebind, RefusedAct};
 use super::run_filter::RunFilter;
 use super::{acts, mismatch, show};
 use crate::history::unit::{self, Binding, Unit, UnitRun};
@@ -33,7 +33,7 @@ pub(super) async fn shown(
     app: App,
     visit: Visit,
     asked: RunFilter,
-    refused: Option<RefusedAct>,
+    refused: Option<RefusedAct<Rebind>>,
 ) -> Result<Response, Trouble> {
     if asked.serial.is_empty() {
         return Err(Trouble::missing(&visit));
@@ -53,7 +53,7 @@ pub(super) async fn shown(
     Ok(page.with_status(&visit, status))
 }
 
-fn of(visit: &Visit, asked: &RunFilter, unit: &Unit, refused: Option<&RefusedAct>) -> Markup {
+fn of(visit: &Visit, asked: &RunFilter, unit: &Unit, refused: Option<&RefusedAct<Rebind>>) -> Markup {
     let more = unit.runs.len().saturating_sub(MOST_RUNS);
     html! {
         section.unit {
