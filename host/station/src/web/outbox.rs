@@ -8,7 +8,8 @@ use halfrow::words::plain;
 use maud::{Markup, html};
 use serde::Deserialize;
 
-use super::history::{acts::fields, show};
+use super::history::acts::{RefusedAct, fields};
+use super::history::show;
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, act, look};
 use super::state::App;
@@ -21,25 +22,36 @@ pub(super) fn routes() -> Vec<Route> {
     vec![look("/outbox", Who::Reader, page), act("/outbox/{id}/release", Who::Engineer, release)]
 }
 
+/// A form that was refused: below which subject it is, and what was typed.
+type Refused = RefusedAct<(String, Release)>;
+
 async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
+    shown(app, visit, None).await
+}
+
+/// The page, with the reason why nothing was tried again, if that was asked for.
+async fn shown(app: App, visit: Visit, refused: Option<Refused>) -> Result<Response, Trouble> {
     let found = app.look(&visit, |now| {
         let unsent = now.unsent()?;
         let dead = now.dead(&unsent)?;
         Ok((unsent, dead))
     });
     let (unsent, dead) = found.await?;
+    let status = refused.as_ref().map_or(StatusCode::OK, |refused| refused.status);
     let content = html! {
+        @if let Some(refused) = &refused { (refused.markup()) }
         h1 { (visit.say("outbox.title")) }
         @if unsent.is_empty() { p.nothing { (visit.say("outbox.none")) } } @else { (sinks(&visit, &unsent)) }
         @if !dead.is_empty() {
             h2 { (visit.say("outbox.dead")) }
             p.soft { (visit.say("outbox.about")) }
             @for of in &unsent { (more(&visit, of)) }
-            @for one in &dead { (letter(&visit, one)) }
+            @for one in &dead { (letter(&visit, one, refused.as_ref())) }
         }
     };
     let title = visit.say("outbox.title");
-    Ok(Page { here: Here::Elsewhere, title, head: show::head(), content }.answer(&visit))
+    let page = Page { here: Here::Elsewhere, title, head: show::head(), content };
+    Ok(page.with_status(&visit, status))
 }
 
 fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
@@ -68,9 +80,12 @@ fn more(visit: &Visit, Unsent { sink, dead, .. }: &Unsent) -> Markup {
     html! { @if dead > shown { p { (visit.words.fill("outbox.more", &names)) } } }
 }
 
-/// Something that waits for a person, with the form by which an engineer has it tried again.
-fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
+/// Something that waits for a person, with the form by which an engineer has it tried again. After a refusal it is as it was sent.
+fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead, refused: Option<&Refused>) -> Markup {
     let Entry { kind, subject, .. } = entry;
+    let is_of = |id: &String, asked: &Release| id == subject && asked.sink.as_ref() == Some(sink);
+    let typed = refused.map(|refused| &refused.typed).filter(|(id, asked)| is_of(id, asked));
+    let reason = typed.map_or("", |(_, asked)| &asked.reason);
     html! {
         form.change method="post" action=(format!("/outbox/{subject}/release")) autocomplete="off" {
             p {
@@ -80,7 +95,7 @@ fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
             }
             p { (show::told(&visit.words.tell(said))) }
             @if visit.may(Who::Engineer) {
-                (fields(visit, ""))
+                (fields(visit, reason))
                 input type="hidden" name="sink" value=(sink);
                 button { (visit.say("outbox.release")) }
             }
@@ -88,7 +103,7 @@ fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
     }
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 struct Release {
     #[serde(default)]
     reason: String,
@@ -100,14 +115,20 @@ async fn release(
     State(app): State<App>,
     visit: Visit,
     Path(id): Path<String>,
-    Form(Release { reason, sink }): Form<Release>,
+    Form(asked): Form<Release>,
 ) -> Result<Response, Trouble> {
-    let reason = Reason::of(&reason)
-        .map_err(|error| Trouble::telling(&visit, StatusCode::BAD_REQUEST, &Said::of(&error)))?;
+    let reason = match Reason::of(&asked.reason) {
+        Ok(reason) => reason,
+        Err(error) => {
+            let why = (StatusCode::BAD_REQUEST, &Said::of(&error));
+            let refused = RefusedAct::new(&visit, why, (id, asked));
+            return shown(app, visit, Some(refused)).await;
+        }
+    };
     let operator = visit.name().to_owned();
     let release = move |store: &mut Store| {
         let by = By { operator: &operator, reason: &reason };
-        match sink {
+        match asked.sink {
             Some(sink) => store.release_at(&sink, &id, by),
             None => store.release(&id, by),
         }

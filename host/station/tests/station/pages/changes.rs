@@ -57,6 +57,11 @@ fn what_waits_at_two_sinks_is_tried_again_where_the_engineer_says() {
     let form = "<input type=\"hidden\" name=\"sink\" value=\"share\">";
     let shown = page(&engineer, "/outbox");
     assert!(shown.contains(form), "{shown}");
+    let long = "x".repeat(501);
+    let refused =
+        engineer.post(&format!("/outbox/{run}/release"), &[("sink", "share"), ("reason", &long)]).send();
+    let typed = format!("name=\"reason\" value=\"{long}\"");
+    assert_eq!((refused.status, refused.text().matches(&typed).count()), (400, 1), "{}", refused.text());
     let fields = [("sink", "share"), ("reason", "looked at")];
     assert_eq!(engineer.post(&format!("/outbox/{run}/release"), &fields).send().status, 303);
     assert_eq!(station.query("SELECT sink FROM outbox WHERE dead_ms IS NOT NULL"), ["mes"]);
