@@ -11,7 +11,7 @@ use crate::floor::CHOSEN;
 use crate::history::Period;
 use crate::history::rate::Rate;
 use crate::history::yields::{By, Wanted, Yields, yields};
-use crate::store::{SINK_OF_PLANT, Snapshot};
+use crate::store::{SINK_OF_PLANT, Snapshot, Unsent};
 use crate::web::layout::{Here, Page};
 use crate::web::live::Now;
 use crate::web::routes::Who;
@@ -165,18 +165,26 @@ async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
     let look = move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.unsent()?));
     let (counted, unsent) = app.look(visit, look).await?;
     let has_plant = app.settings().plant.is_some();
-    let counts = unsent.iter().filter(|unsent| !has_plant || unsent.sink == SINK_OF_PLANT);
-    let entries: u32 = counts.map(|unsent| unsent.results).sum();
-    let number = entries.to_string();
-    let left = [("entries", number.as_str())];
-    Ok(html! {
-        (summed(visit, &counted))
-        @if has_plant || entries > 0 {
+    Ok(html! { (summed(visit, &counted)) (left(visit, &unsent, has_plant)) })
+}
+
+/// What the plant does not have yet, and what that other sink does not have that lacks most: a result that two of them lack
+/// is one result.
+fn left(visit: &Visit, unsent: &[Unsent], has_plant: bool) -> Markup {
+    let (of_plant, others): (Vec<_>, Vec<_>) =
+        unsent.iter().partition(|unsent| has_plant && unsent.sink == SINK_OF_PLANT);
+    let [at_plant, elsewhere] =
+        [of_plant, others].map(|sinks| sinks.iter().map(|unsent| unsent.results).max().unwrap_or_default());
+    let number = |results: u32| results.to_string();
+    html! {
+        @if has_plant || elsewhere > 0 {
             " · " a href="/outbox" {
-                @if has_plant { (visit.words.fill("today.unsent", &left)) } @else { (visit.words.fill("today.waiting", &left)) }
+                @if has_plant { (visit.words.fill("today.unsent", &[("entries", &number(at_plant))])) }
+                @if has_plant && elsewhere > 0 { " · " }
+                @if elsewhere > 0 { (visit.words.fill("today.waiting", &[("entries", &number(elsewhere))])) }
             }
         }
-    })
+    }
 }
 
 fn summed(visit: &Visit, Yields { lines, .. }: &Yields) -> Markup {

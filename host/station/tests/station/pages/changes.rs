@@ -72,12 +72,14 @@ fn what_waits_at_two_sinks_is_tried_again_where_the_engineer_says() {
 /// A screen on a line has no address bar.
 #[test]
 fn the_page_leads_to_what_a_sink_does_not_have() {
-    let sink = "[[sink]]\nname = \"share\"\nfolder = \"nowhere\"\nformat = \"record\"";
-    let station = Station::with(1, &format!("[web]\nlisten = \"127.0.0.1:0\"\n{sink}"));
+    let sink = |name| format!("[[sink]]\nname = \"{name}\"\nfolder = \"no-{name}\"\nformat = \"record\"\n");
+    let sinks = ["share", "mes"].map(sink).concat();
+    let station = Station::with(1, &format!("[web]\nlisten = \"127.0.0.1:0\"\n{sinks}"));
     let serving = station.serve();
     let here = serving.here();
     assert!(!here.get("/").send().text().contains("/outbox"), "nothing is unsent");
     here.post("/scan", &[("text", SERIALS[0])]).until_taken();
+    // One result, which neither of them has.
     here.get("/today").until("<a href=\"/outbox\">still to be sent: 1</a>");
 }
 
