@@ -16,7 +16,7 @@ export function live({ mark, hear, show }) {
     const mine = source;
     for (const name of NAMES) source.addEventListener(name, (event) => mine === source && take(event));
   };
-  // The lanes, the plans or the program are not those of this page any more.
+  // The lanes, the plans, the program or the person are not those of this page any more.
   const leave = () => {
     source.close();
     [source, opened] = [undefined, now() + RELOADS];

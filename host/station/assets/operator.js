@@ -37,21 +37,26 @@ function post(path, fields, show, unsent) {
       const became = await answer.json();
       // Somebody else is logged in.
       if (became.is_stale) return leave(unsent);
+      sessionStorage.removeItem(LEFT);
       show(became);
     } catch {
+      keep(unsent);
       show(unsent);
     }
   });
 }
 
-// The page comes anew, and says then that this was not taken.
+// If the page comes anew now, it says then that this was not taken.
+const keep = (unsent) => sessionStorage.setItem(LEFT, JSON.stringify([Date.now(), unsent.said]));
+
 function leave(unsent) {
-  sessionStorage.setItem(LEFT, JSON.stringify([Date.now(), unsent.said]));
+  keep(unsent);
   location.reload();
 }
 
 // A page that is not live takes nothing. The reason may be that the session is over; then the page is loaded anew to log in.
 function refuse(show, unsent) {
+  keep(unsent);
   show(unsent);
   if (!("known" in station)) return;
   fetch("/", { method: "HEAD", redirect: "manual" }).then(({ ok }) => ok || location.reload(), () => {});

@@ -163,10 +163,13 @@ fn what_is_scanned_while_the_page_is_not_live_is_never_done() {
     page.wait("document.body.classList.contains('dead')");
     page.scan(SERIALS[0], "Enter", Duration::ZERO);
     page.wait("document.getElementById('answer').textContent.includes('did not arrive')");
+    // It is said again if the page comes anew now, but not once it has gone on.
+    page.wait("sessionStorage.getItem('left')?.includes('did not arrive')");
     serving.signal(Signal::SIGCONT);
     page.wait("!document.body.classList.contains('dead')");
     page.scan(SERIALS[1], "Enter", Duration::ZERO);
     page.wait("document.querySelector('.lane.pass') !== null");
+    page.wait("sessionStorage.getItem('left') === null");
     assert_eq!(station.query("SELECT act || ' ' || detail FROM audit"), [format!("scan {}", SERIALS[1])]);
 }
 
