@@ -2,6 +2,8 @@
 
 use std::fmt::Debug;
 use std::fs::{self, File};
+use std::hash::{BuildHasher as _, RandomState};
+use std::iter;
 use std::net::TcpListener;
 use std::os::unix::fs::FileTypeExt as _;
 use std::path::{Path, PathBuf};
@@ -100,8 +102,10 @@ pub(crate) fn held_up(path: &Path) -> File {
 /// A port that was free may be taken by the time that a server asks for it, but not every time.
 pub(crate) const PORTS_TRIED: usize = 5;
 
+/// A free port, below those that Linux gives to whoever names none, so that hardly anybody gets it while its server is away.
 pub(crate) fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+    let drawn = || 10_000 + u16::try_from(RandomState::new().hash_one(()) % 20_000).unwrap();
+    iter::repeat_with(drawn).find(|port| TcpListener::bind(("127.0.0.1", *port)).is_ok()).unwrap()
 }
 
 /// A server that `begin` starts at a port of 127.0.0.1, as soon as it listens, and the port. One that ends did not get its port.
