@@ -212,7 +212,7 @@ mod tests {
     use nix::unistd::{Pid, getpgid};
 
     use super::*;
-    use crate::process_group;
+    use crate::labgrid::Labgrid;
 
     /// An IPv6 address before a port is in brackets (RFC 3986, section 3.2.2).
     #[test]
@@ -230,7 +230,10 @@ mod tests {
     /// Ctrl-C goes to the whole group of the station, and the run is to end before its board is given back.
     #[test]
     fn what_has_the_place_is_in_a_group_of_its_own() {
-        let (mut holder, _) = Holder::start(process_group::command(Path::new("cat"))).unwrap();
+        // It ends at once, and keeps its group until it is waited for.
+        let labgrid = Labgrid { program: "cat".into(), coordinator: None, deadline: Duration::from_secs(60) };
+        let place = Place::new("cam-1".to_owned(), "4", "1", labgrid);
+        let (mut holder, _) = Holder::start(place.call("hold")).unwrap();
         let process = Pid::from_raw(holder.child.id().cast_signed());
         assert_eq!(getpgid(Some(process)), Ok(process));
         drop(holder.stdin.take());
