@@ -1,15 +1,13 @@
 //! What fails most.
 
-use std::collections::BTreeSet;
-
 use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
 use super::run_filter::RunFilter;
 use super::{bars, list, show, yields};
+use crate::history;
 use crate::history::pareto::{self, Bar, Of, Pareto};
-use crate::history::{self, PlanName};
 use crate::store::Snapshot;
 use crate::web::fields::Fields;
 use crate::web::layout::{Here, Page};
@@ -30,7 +28,7 @@ pub(super) async fn page(
     let counts = counts.each_ref().map(|(name, count)| (*name, count.as_str()));
     let content = html! {
         h1 { (visit.say("pareto.title")) }
-        (form(&visit, (&asked, by), &list::lanes(&app), &plans))
+        (yields::form(&visit, ("/pareto", &yields::choice(&visit, by, word)), &asked, &list::lanes(&app), &plans))
         @if found.failed == 0 {
             p.nothing { (visit.say("pareto.none")) }
         } @else {
@@ -45,22 +43,10 @@ pub(super) async fn page(
     Ok(page.answer(&visit))
 }
 
-fn form(
-    visit: &Visit,
-    (asked, by): (&RunFilter, Of),
-    lanes: &[String],
-    plans: &BTreeSet<PlanName>,
-) -> Markup {
-    let word = |visit: &Visit, by: Of| match by {
+fn word(visit: &Visit, by: Of) -> &'static str {
+    match by {
         Of::Part => visit.say("pareto.part"),
         Of::Check => visit.say("pareto.check"),
-    };
-    html! {
-        form.filters method="get" action="/pareto" {
-            (yields::choice(visit, by, word))
-            (list::common(visit, asked, lanes, plans))
-            span.acts { button { (visit.say("history.show")) } " " a href="/pareto" { (visit.say("history.all")) } }
-        }
     }
 }
 

@@ -48,7 +48,7 @@ pub(super) async fn page(
     let content = html! {
         h1 { (visit.say("yield.title")) }
         p.soft { (visit.say("yield.about")) }
-        (form(&visit, (&asked, by), &list::lanes(&app), &plans))
+        (form(&visit, ("/yield", &choice(&visit, by, word)), &asked, &list::lanes(&app), &plans))
         @if lines.is_empty() {
             p.nothing { (visit.say("history.none")) }
         } @else {
@@ -62,17 +62,19 @@ pub(super) async fn page(
     Ok(page.answer(&visit))
 }
 
-fn form(
+/// The form of the page at `address`, whose lines are those of `choice`.
+pub(super) fn form(
     visit: &Visit,
-    (asked, by): (&RunFilter, By),
+    (address, choice): (&str, &Markup),
+    asked: &RunFilter,
     lanes: &[String],
     plans: &BTreeSet<PlanName>,
 ) -> Markup {
     html! {
-        form.filters method="get" action="/yield" {
-            (choice(visit, by, word))
+        form.filters method="get" action=(address) {
+            (choice)
             (list::common(visit, asked, lanes, plans))
-            span.acts { button { (visit.say("history.show")) } " " a href="/yield" { (visit.say("history.all")) } }
+            span.acts { button { (visit.say("history.show")) } " " a href=(address) { (visit.say("history.all")) } }
         }
     }
 }
