@@ -2,11 +2,12 @@
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
 use halfrow::link::{self, Link};
+use parking_lot::Mutex;
 use rand::TryRng as _;
 use rand::rngs::SysRng;
 
@@ -56,7 +57,7 @@ impl Fixture {
     pub(super) fn exchange(&self) {
         let [which, fault] = drawn();
         let fault = if which % ONE_OF == 0 { FAULTS.get(usize::from(fault) % FAULTS.len()) } else { None };
-        *self.board.lock().unwrap_or_else(PoisonError::into_inner) = target(fault.unwrap_or(&""));
+        *self.board.lock() = target(fault.unwrap_or(&""));
     }
 }
 
@@ -74,7 +75,7 @@ pub(super) fn drawn<const N: usize>() -> [u8; N] {
 
 /// Carries bytes between a connection and the board that is in the fixture, until either is gone.
 fn served(mut stream: TcpStream, board: &Mutex<String>) -> anyhow::Result<()> {
-    let target = board.lock().unwrap_or_else(PoisonError::into_inner).parse()?;
+    let target = board.lock().parse()?;
     let mut link = link::open(&target)?.link;
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(WAIT))?;

@@ -1,12 +1,13 @@
 //! The engine's own thread.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::mpsc::Receiver;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
+use parking_lot::Mutex;
 
 use super::hook_queue::{NotStarted, Shows};
 use super::known::{Known, KnownOfLane};
@@ -81,7 +82,7 @@ impl AtWork {
 
     /// Shows a sign of life.
     fn works(&self) {
-        self.live.lock().unwrap_or_else(PoisonError::into_inner).worked = Some(Instant::now());
+        self.live.lock().worked = Some(Instant::now());
     }
 
     /// Waits for hooks, recoveries and what labgrid lent, and publishes what hooks still report.
@@ -382,7 +383,7 @@ impl AtWork {
     /// Publishes the state of a lane if it has changed. Once it shows no verdict any more, lamps are put out.
     fn publish(&mut self, lane: usize) {
         let Some(state) = self.floor.lanes().get(lane).map(LaneState::from) else { return };
-        let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut live = self.live.lock();
         let Some(known) = live.lanes.get_mut(lane).filter(|known| **known != state) else { return };
         let is_cleared = known.state.is_verdict() && !state.state.is_verdict();
         known.clone_from(&state);
@@ -394,6 +395,6 @@ impl AtWork {
     }
 
     fn tell(&self, news: &News) {
-        self.live.lock().unwrap_or_else(PoisonError::into_inner).listeners.tell(news);
+        self.live.lock().listeners.tell(news);
     }
 }

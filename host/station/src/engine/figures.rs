@@ -1,8 +1,9 @@
 //! What is counted since the engine began, for whoever monitors stations from afar.
 
 use std::collections::BTreeMap;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
+
+use parking_lot::Mutex;
 
 use super::logged::reasons;
 use crate::history::PlanName;
@@ -118,12 +119,12 @@ impl Counter {
 
     /// Takes note that the lane of a run has ended.
     pub(super) fn ended(&self, run: &str) {
-        self.unsaved().insert(run.to_owned(), Instant::now());
+        self.unsaved.lock().insert(run.to_owned(), Instant::now());
     }
 
     /// Counts a run that is saved, however late; one whose verdict still waits for the plant is not counted again.
     pub(super) fn saved(&self, Record { seconds, run, plan, .. }: &Record) {
-        let Some(ended) = self.unsaved().remove(&run.id) else { return };
+        let Some(ended) = self.unsaved.lock().remove(&run.id) else { return };
         let took = ended.elapsed().as_secs_f64();
         self.with(|figures| {
             figures.commits.add(took);
@@ -136,12 +137,8 @@ impl Counter {
         });
     }
 
-    fn unsaved(&self) -> MutexGuard<'_, BTreeMap<String, Instant>> {
-        self.unsaved.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     fn with<T>(&self, act: impl FnOnce(&mut Figures) -> T) -> T {
-        act(&mut self.figures.lock().unwrap_or_else(PoisonError::into_inner))
+        act(&mut self.figures.lock())
     }
 }
 

@@ -1,9 +1,8 @@
 //! What the log says of a lane, and what is counted: once that it begins no run or shows no verdict, and once that it does
 //! again.
 
-use std::sync::{Mutex, PoisonError};
-
 use halfrow::result::codes::CodeList;
+use parking_lot::Mutex;
 
 use crate::codes;
 use crate::floor::Event;
@@ -123,7 +122,7 @@ impl LoggedOfLanes {
     /// Logs what happened to the lane `name`, at this index, if it is news; returns why no run was begun, if that is
     /// the station's doing.
     pub(super) fn note(&self, lane: usize, name: &str, event: &Event) -> Option<&'static str> {
-        let mut logged = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut logged = self.0.lock();
         if let Some(line) = logged.get_mut(lane)?.take(name, event) {
             tracing::warn!("{line}");
         }

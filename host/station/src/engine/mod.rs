@@ -19,13 +19,14 @@ mod news;
 mod unsent;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
+use parking_lot::Mutex;
 
 pub use figures::{Figures, Histogram};
 pub(crate) use hooks::HookError;
@@ -151,7 +152,7 @@ impl Engine {
     /// All news from now on, after the present state of every lane. A listener that is too far behind hears no more.
     #[must_use]
     pub fn listen(&self) -> Receiver<News> {
-        let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut live = self.live.lock();
         let lanes: Vec<_> = live.lanes.iter().cloned().map(News::Lane).collect();
         live.listeners.add(lanes.into_iter())
     }
@@ -159,7 +160,7 @@ impl Engine {
     /// The state of every lane.
     #[must_use]
     pub fn lanes(&self) -> Vec<LaneState> {
-        self.live.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
+        self.live.lock().lanes.clone()
     }
 
     /// What was counted since it began.
@@ -176,7 +177,7 @@ impl Engine {
     /// Whether its thread works, as seen within the last seconds.
     #[must_use]
     pub(crate) fn is_well(&self) -> bool {
-        let live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
+        let live = self.live.lock();
         live.worked.is_some_and(|worked| worked.elapsed() < SILENT)
     }
 
@@ -184,7 +185,7 @@ impl Engine {
     /// as while a disk is slow.
     #[must_use]
     pub fn has_ended(&self) -> bool {
-        let thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner);
+        let thread = self.thread.lock();
         thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
@@ -203,14 +204,14 @@ impl Engine {
     /// Ends the engine once all runs under way are over, and their results saved. With `by` the runs are ended, too;
     /// without it they come to their own end.
     pub fn close(&self, by: Option<StoppedBy>) {
-        let Some(thread) = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+        let Some(thread) = self.thread.lock().take() else { return };
         self.is_ending.store(true, Ordering::Release);
         self.put(Input::Close(by));
         if thread.join().is_err() {
             tracing::error!("the engine ended early; look at what it said before");
         }
         // There is no more news, which ends the listeners.
-        self.live.lock().unwrap_or_else(PoisonError::into_inner).listeners = Listeners::default();
+        self.live.lock().listeners = Listeners::default();
     }
 
     fn put(&self, input: Input) {

@@ -5,8 +5,9 @@
 //! Where even the rest takes long, everything is counted less often.
 
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
+
+use parking_lot::Mutex;
 
 use super::{DAY_MS, PlanName, count, plans};
 use crate::store::{DatabaseError, Snapshot, StoreError, statements, values};
@@ -86,7 +87,7 @@ impl Tally {
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
     pub fn counts(&self, of: &Snapshot) -> Result<BTreeMap<Cell, Count>, StoreError> {
-        let mut before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut before = self.before.lock();
         let begun = Instant::now();
         if let Some((_, counts)) = before.last.as_ref().filter(|(until, _)| begun < *until) {
             return Ok(counts.clone());

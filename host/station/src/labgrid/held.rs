@@ -2,7 +2,6 @@
 
 use std::io::{BufRead as _, BufReader, Read};
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::PoisonError;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -109,14 +108,14 @@ impl Place {
         let left =
             thread::Builder::new().name("labgrid".to_owned()).spawn(move || holder.left(&name, deadline));
         match left {
-            Ok(left) => *self.leaving.lock().unwrap_or_else(PoisonError::into_inner) = Some(left),
+            Ok(left) => *self.leaving.lock() = Some(left),
             Err(error) => tracing::warn!("nobody waits for {} to be given back: {error}", self.name),
         }
     }
 
     /// Waits until an earlier run has given the place back, or failed to.
     pub(super) fn wait_until_left(&self) {
-        let leaving = self.leaving.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let leaving = self.leaving.lock().take();
         if leaving.is_some_and(|leaving| leaving.join().is_err()) {
             tracing::error!("a thread of {} ended early; look at what it said before", self.name);
         }

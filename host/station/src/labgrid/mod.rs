@@ -14,11 +14,12 @@ mod held;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use halfrow::target::Target;
+use parking_lot::Mutex;
 
 pub use error::LabgridError;
 pub use held::AcquiredPlace;

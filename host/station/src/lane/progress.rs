@@ -1,9 +1,9 @@
 //! The judge's progress as messages, no more of them than somebody can read.
 
-use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use halfrow::{Event, Progress};
+use parking_lot::Mutex;
 
 use super::Message;
 
@@ -28,8 +28,7 @@ impl<'a> ProgressMessages<'a> {
     }
 
     fn count(&self, rows: u64) {
-        // A thread that panicked ends the lane anyway.
-        let Ok(mut so_far) = self.rows.lock() else { return };
+        let mut so_far = self.rows.lock();
         so_far.done += rows;
         if so_far.told.is_none_or(|told| told.elapsed() >= PACE) {
             so_far.told = Some(Instant::now());
@@ -44,11 +43,7 @@ impl Progress for ProgressMessages<'_> {
             Event::Step(step) => (self.tell)(&Message::Doing { what: step.to_string() }),
             Event::Frame(name) => (self.tell)(&Message::Doing { what: name }),
             Event::Rows(rows) => self.count(rows),
-            Event::RowsExpected(rows) => {
-                if let Ok(mut so_far) = self.rows.lock() {
-                    so_far.expected += rows;
-                }
-            }
+            Event::RowsExpected(rows) => self.rows.lock().expected += rows,
             // No plan has a step of that kind.
             Event::Soaked(_) | Event::Done => {}
         }

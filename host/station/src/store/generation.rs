@@ -9,9 +9,9 @@ use std::fs::{self, File, Metadata};
 use std::io::{self, Read as _};
 use std::os::unix::fs::{FileExt as _, MetadataExt as _, OpenOptionsExt as _};
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use nix::fcntl::OFlag;
+use parking_lot::Mutex;
 use rusqlite::{Connection, ffi};
 
 use super::folder::log_of;
@@ -45,10 +45,6 @@ type FileId = (u64, u64);
 /// The databases that this process writes to.
 static WRITTEN: Mutex<Vec<FileId>> = Mutex::new(Vec::new());
 
-fn written() -> MutexGuard<'static, Vec<FileId>> {
-    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 fn id(file: io::Result<Metadata>) -> Option<FileId> {
     file.map(|file| (file.dev(), file.ino())).ok()
 }
@@ -71,7 +67,7 @@ pub(super) struct Opened {
 
 impl Opened {
     fn new(file: File, known: Generations) -> Self {
-        written().extend(id(file.metadata()));
+        WRITTEN.lock().extend(id(file.metadata()));
         Self { file, known, changes: 0 }
     }
 
@@ -138,7 +134,7 @@ impl Opened {
 impl Drop for Opened {
     fn drop(&mut self) {
         let own = id(self.file.metadata());
-        let mut written = written();
+        let mut written = WRITTEN.lock();
         if let Some(place) = written.iter().position(|one| Some(*one) == own) {
             written.swap_remove(place);
         }
@@ -193,7 +189,7 @@ pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreEr
 /// Refuses a log that belongs to another database; a station may start meanwhile. A database that this process writes to is not
 /// examined: its log is known, and to open and close the file would release the locks that SQLite has on it.
 pub(super) fn refuse_other_log(folder: &Folder) -> Result<(), StoreError> {
-    if id(fs::metadata(folder.database())).is_some_and(|id| written().contains(&id)) {
+    if id(fs::metadata(folder.database())).is_some_and(|id| WRITTEN.lock().contains(&id)) {
         return Ok(());
     }
     loop {

@@ -1,6 +1,8 @@
 //! One store for several lanes, which use it one at a time.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
+
+use parking_lot::Mutex;
 
 use super::Store;
 
@@ -18,6 +20,6 @@ impl SharedStore {
     /// Runs `act` on the store, which nobody else has meanwhile, and returns its result.
     pub fn with<T>(&self, act: impl FnOnce(&mut Store) -> T) -> T {
         // A panic rolled its transaction back, and left the store as it was.
-        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+        act(&mut self.0.lock())
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::net::IpAddr;
 use std::pin::Pin;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use axum::body::Body;
@@ -12,6 +12,7 @@ use axum::http::header::CONTENT_TYPE;
 use axum::middleware::Next;
 use axum::response::Response;
 use hyper::body::{Body as HttpBody, Bytes, Frame, SizeHint};
+use parking_lot::Mutex;
 use tokio::sync::Notify;
 
 use super::access::network;
@@ -75,7 +76,7 @@ impl Slots {
     /// # Errors
     /// [`NoSlot`] where all that could give way are being answered.
     pub(super) fn take(&self, peer: IpAddr) -> Result<Slot, NoSlot> {
-        let (network, mut table) = (network(peer), self.table());
+        let (network, mut table) = (network(peer), self.0.lock());
         let most = if network.is_loopback() { table.of_this_computer } else { CONNECTIONS_OF_ONE };
         let own = table.taken.values().filter(|taken| taken.network == network).count();
         if own >= most {
@@ -88,10 +89,6 @@ impl Slots {
             .taken
             .insert(number, Taken { network, at: At::Waits, since: number, close: Arc::clone(&close) });
         Ok(Slot { all: self.clone(), number, close })
-    }
-
-    fn table(&self) -> MutexGuard<'_, Table> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -133,7 +130,7 @@ impl Slot {
     }
 
     fn is_at(&self, at: At) {
-        let mut table = self.all.table();
+        let mut table = self.all.0.lock();
         let since = table.next();
         if let Some(taken) = table.taken.get_mut(&self.number) {
             (taken.at, taken.since) = (at, since);
@@ -143,7 +140,7 @@ impl Slot {
 
 impl Drop for Slot {
     fn drop(&mut self) {
-        self.all.table().taken.remove(&self.number);
+        self.all.0.lock().taken.remove(&self.number);
     }
 }
 
@@ -207,7 +204,7 @@ mod tests {
 
     /// Which of these were told to give way.
     fn lost(of: &[Slot]) -> Vec<usize> {
-        let is_there = |slot: &Slot| slot.all.table().taken.contains_key(&slot.number);
+        let is_there = |slot: &Slot| slot.all.0.lock().taken.contains_key(&slot.number);
         of.iter().enumerate().filter(|(_, slot)| !is_there(slot)).map(|(number, _)| number).collect()
     }
 

@@ -5,10 +5,11 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 use std::{io, thread};
 
+use parking_lot::Mutex;
 use tokio::sync::{broadcast, oneshot};
 
 use crate::clock;
@@ -118,18 +119,18 @@ impl Live {
 
     /// Everything as it is, and the events from then on.
     pub(super) fn follow(&self) -> (Now, broadcast::Receiver<Event>) {
-        let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = self.now.lock();
         (Now { beat: self.moment(), ..now.clone() }, self.pages.subscribe())
     }
 
     /// Everything as it is.
     pub(super) fn now(&self) -> Now {
-        self.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.now.lock().clone()
     }
 
     /// What this run does in this lane, as far as it was told.
     pub(super) fn doing(&self, lane: &str, run: &str) -> Option<Doing> {
-        let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = self.now.lock();
         now.doing.get(lane).filter(|doing| doing.run == run).cloned()
     }
 
@@ -158,7 +159,7 @@ impl Live {
     pub(super) fn ask(&self) -> (u64, oneshot::Receiver<Became>) {
         let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
         let (sender, receiver) = oneshot::channel();
-        let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut asked = self.asked.lock();
         asked.retain(|_, sender| !sender.is_closed());
         asked.insert(number, sender);
         (number, receiver)
@@ -176,7 +177,7 @@ impl Live {
         let answered = if let EventKind::Scan(became) = &what { Some(became.clone()) } else { None };
         self.tell(what);
         if let Some(became) = answered {
-            let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut asked = self.asked.lock();
             // A page that is gone does not wait for its scan any more.
             let _ = asked.remove(&became.number).map(|sender| sender.send(became));
         }
@@ -185,15 +186,15 @@ impl Live {
     /// News of the engine were missed. Every page finds a number missing, and takes everything anew; whoever waits for an
     /// answer is told that there is none.
     fn missed(&self) {
-        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut now = self.now.lock();
         now.id += 1;
         now.doing.clear();
         drop(now);
-        self.asked.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        self.asked.lock().clear();
     }
 
     fn tell(&self, what: EventKind) {
-        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut now = self.now.lock();
         match &what {
             EventKind::Lane(state) => {
                 let is_over = state.run.is_none();

@@ -2,8 +2,9 @@
 //! the plan as it was, and shared boards that cannot be judged as they are shared.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+
+use parking_lot::Mutex;
 
 use crate::plan::Plan;
 use crate::said::Saying;
@@ -24,11 +25,11 @@ pub struct Aside {
 impl Aside {
     /// `worker`, without what is set aside.
     pub(super) fn without(&self, worker: &Worker) -> Worker {
-        let plans = locked(&self.plans);
+        let plans = self.plans.lock();
         let lets = |sha256: &&String| plans.get(*sha256).is_none_or(|until| *until <= Instant::now());
         Worker {
             plans: worker.plans.iter().filter(lets).cloned().collect(),
-            unfit: locked(&self.boards).iter().cloned().collect(),
+            unfit: self.boards.lock().iter().cloned().collect(),
             ..worker.clone()
         }
     }
@@ -36,24 +37,20 @@ impl Aside {
     /// Takes note of a run that was not begun because a file of `plan` was changed: the plan is set aside. The log says that once.
     pub(super) fn put(&self, Plan { sha256, product, name, version, .. }: &Plan, why: &Saying) {
         let until = Instant::now() + AGAIN;
-        if locked(&self.plans).insert(sha256.clone(), until).is_none() {
+        if self.plans.lock().insert(sha256.clone(), until).is_none() {
             tracing::warn!("no job of the plan {product}/{name} {version} is taken for now: {why}");
         }
     }
 
     /// Takes note of a run by `plan`. If it was set aside, the log says that it is not any more.
     pub(super) fn take_back(&self, Plan { sha256, product, name, version, .. }: &Plan) {
-        if locked(&self.plans).remove(sha256).is_some() {
+        if self.plans.lock().remove(sha256).is_some() {
             tracing::warn!("jobs of the plan {product}/{name} {version} are taken again");
         }
     }
 
     /// Sets the board of `claim` aside for jobs by its plan, until it is shared differently.
     pub(super) fn put_board(&self, claim: &Claim) {
-        locked(&self.boards).insert(claim.pairing());
+        self.boards.lock().insert(claim.pairing());
     }
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,10 +1,12 @@
 //! What is held at a plant: a thread renews the lease, and notes when it is lost.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
+
+use parking_lot::Mutex;
 
 use crate::clock::Moment;
 use crate::guard::guarded;
@@ -153,7 +155,7 @@ impl Known {
         if self.is_taken.load(Ordering::Relaxed) {
             return Some(Lost::Taken { board });
         }
-        let Renewed { since, said } = &*self.renewed();
+        let Renewed { since, said } = &*self.renewed.lock();
         let passed = since.elapsed();
         (passed + ENDS >= HELD).then(|| Lost::Unreached {
             board,
@@ -164,15 +166,11 @@ impl Known {
 
     /// Notes that it was still held after `since`.
     fn renew(&self, since: Moment) {
-        self.renewed().since = since;
+        self.renewed.lock().since = since;
     }
 
     fn note(&self, said: String) {
-        self.renewed().said = said;
-    }
-
-    fn renewed(&self) -> MutexGuard<'_, Renewed> {
-        self.renewed.lock().unwrap_or_else(PoisonError::into_inner)
+        self.renewed.lock().said = said;
     }
 }
 

@@ -1,6 +1,8 @@
 //! A connection to a plant, kept as long as it works.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
+
+use parking_lot::Mutex;
 
 use super::super::StoreError;
 use super::{Plant, PlantAddress};
@@ -32,7 +34,7 @@ impl PlantLink {
         question: impl FnOnce(&mut Plant) -> Result<T, E>,
     ) -> Result<T, E> {
         // A question that panicked has taken the connection with it.
-        let mut kept = self.0.plant.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.0.plant.lock();
         let mut plant = match kept.take() {
             Some(plant) => plant,
             None => Plant::connect(&self.0.address)?,

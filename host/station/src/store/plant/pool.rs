@@ -1,6 +1,8 @@
 //! Connections to a plant, which pages reuse one after the other.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+
+use parking_lot::Mutex;
 
 use super::super::{Deed, Snapshot, StoreError};
 use super::{Plant, PlantAddress};
@@ -36,7 +38,7 @@ impl PlantPool {
         let now = self.snapshot()?;
         let found = look(&now);
         if let Some(plant) = now.end() {
-            let mut idle = self.idle();
+            let mut idle = self.0.idle.lock();
             if idle.len() < KEPT {
                 idle.push(plant);
             }
@@ -54,14 +56,10 @@ impl PlantPool {
 
     /// A snapshot by a connection that was kept, or by a new one if there is none or it has ended meanwhile.
     fn snapshot(&self) -> Result<Snapshot, StoreError> {
-        let kept = self.idle().pop();
+        let kept = self.0.idle.lock().pop();
         match kept.map(Snapshot::of_plant) {
             Some(Ok(now)) => Ok(now),
             _ => Snapshot::of_plant(Plant::connect(&self.0.address)?),
         }
-    }
-
-    fn idle(&self) -> MutexGuard<'_, Vec<Plant>> {
-        self.0.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

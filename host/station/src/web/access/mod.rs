@@ -13,7 +13,6 @@ mod users;
 
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 pub use address::{Address, AddressError};
@@ -31,6 +30,7 @@ use failures::Failures;
 pub(super) use failures::network;
 use key::Key;
 use machines::Machines;
+use parking_lot::Mutex;
 use sessions::Sessions;
 
 /// The kinds of the marks of forms and of cookies.
@@ -169,13 +169,13 @@ impl Access {
             People::Listed { file, idle, .. } => (file, *idle),
         };
         let Some(mark) = session.map(|session| self.key.mark(SESSION, session)) else { return Ok(None) };
-        let known = self.sessions().user(&mark, idle, is_act, clock::now_ms());
+        let known = self.sessions.lock().user(&mark, idle, is_act, clock::now_ms());
         let Some(known) = known else { return Ok(None) };
         // Whoever was removed from the file, or has another badge or password there, is logged out.
         if Users::load(file)?.has(&self.key, &known) {
             return Ok(Some(known.user));
         }
-        self.sessions().remove(&mark, clock::now_ms());
+        self.sessions.lock().remove(&mark, clock::now_ms());
         Ok(None)
     }
 
@@ -199,17 +199,17 @@ impl Access {
         };
         // From here on nothing may wait for the disk, because others wait for the locks.
         let Some(name) = tokens.reader(&self.key, token) else {
-            let wait = locked(&self.refused).attempt(network(peer), Instant::now());
+            let wait = self.refused.lock().attempt(network(peer), Instant::now());
             return Ok(wait.map_or(Machine::Unknown, Machine::Waits));
         };
         // A right token never waits: nobody guesses 256 bits, and behind a proxy others have the same address.
-        let is_noted = locked(&self.machines).has(name, peer);
+        let is_noted = self.machines.lock().has(name, peer);
         Ok(Machine::Known { name: name.to_owned(), is_noted })
     }
 
     /// Notes that the audit has this machine from `peer`.
     pub(super) fn noted(&self, name: String, peer: IpAddr) {
-        locked(&self.machines).note(name, peer);
+        self.machines.lock().note(name, peer);
     }
 
     /// Begins a session, of `who` if anybody. Returns the value of its cookie.
@@ -219,14 +219,14 @@ impl Access {
     pub(super) fn begin(&self, who: Option<Identified>) -> Result<String, SecretError> {
         let session = key::hex(&key::drawn().map_err(SecretError::NoRandomness)?);
         if let Some(who) = who {
-            self.sessions().add(self.key.mark(SESSION, &session), who, clock::now_ms());
+            self.sessions.lock().add(self.key.mark(SESSION, &session), who, clock::now_ms());
         }
         Ok(session)
     }
 
     /// Ends the session of this cookie.
     pub(super) fn end(&self, session: &str) {
-        self.sessions().remove(&self.key.mark(SESSION, session), clock::now_ms());
+        self.sessions.lock().remove(&self.key.mark(SESSION, session), clock::now_ms());
     }
 
     /// The mark of forms that are made for this cookie.
@@ -242,16 +242,16 @@ impl Access {
     /// Counts an attempt. Returns how long they must wait first, if they must.
     pub(super) fn attempt(&self, by: &Claimant) -> Option<Duration> {
         match by {
-            Claimant::Stranger(peer) => locked(&self.failures).attempt(network(*peer), Instant::now()),
-            Claimant::Session(session) => locked(&self.scans).attempt(session.clone(), Instant::now()),
+            Claimant::Stranger(peer) => self.failures.lock().attempt(network(*peer), Instant::now()),
+            Claimant::Session(session) => self.scans.lock().attempt(session.clone(), Instant::now()),
         }
     }
 
     /// An attempt did not fail.
     pub(super) fn succeeded(&self, by: &Claimant) {
         match by {
-            Claimant::Stranger(peer) => locked(&self.failures).succeeded(&network(*peer)),
-            Claimant::Session(session) => locked(&self.scans).succeeded(session),
+            Claimant::Stranger(peer) => self.failures.lock().succeeded(&network(*peer)),
+            Claimant::Session(session) => self.scans.lock().succeeded(session),
         }
     }
 
@@ -267,14 +267,6 @@ impl Access {
         let secure = if self.address.is_https() { "; Secure" } else { "" };
         format!("{}={session}; Path=/; HttpOnly; SameSite=Lax{secure}", self.cookie_name())
     }
-
-    fn sessions(&self) -> MutexGuard<'_, Sessions> {
-        locked(&self.sessions)
-    }
-}
-
-fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
-    of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Adds a token to the file `file`. Returns the token, which is written nowhere.
