@@ -52,3 +52,4 @@ pub mod work;
 
 pub use halfrow_program::{console, exit, guard};
 pub use ids::NoRandomness;
+pub use input_error::InputError;

@@ -93,7 +93,7 @@ impl Snapshot {
         Ok(unsent)
     }
 
-    /// The first [`DEAD_SHOWN`] entries of each of these sinks that wait for a person; [`Unsent::dead`] counts all of them.
+    /// The first `DEAD_SHOWN` entries of each of these sinks that wait for a person; [`Unsent::dead`] counts all of them.
     ///
     /// # Errors
     /// Like [`Self::unsent`].

@@ -102,7 +102,7 @@ impl Waiter {
 
 impl Plant {
     /// Enters a board that is shared, or changes it while nobody has it; `operator` says so. Returns whether it is entered: not
-    /// when somebody has it, or [another one](Self::other_of_unit) is this unit.
+    /// when somebody has it, or another one is this unit.
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.

@@ -130,7 +130,7 @@ pub struct Worker {
     pub once: Vec<String>,
     /// What it has that jobs may need.
     pub has: Vec<String>,
-    /// The [pairings](Claim::pairing) that it cannot judge.
+    /// What it cannot judge: plans with boards, each pair as one text.
     pub unfit: Vec<String>,
 }
 

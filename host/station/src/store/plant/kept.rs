@@ -53,7 +53,7 @@ impl Snapshot {
     /// The run by which a job is done: `Some(None)` for a job that is not done, `None` for one that does not exist.
     ///
     /// # Errors
-    /// Like [`Self::kept_runs`].
+    /// [`StoreError`] when the plant cannot be asked.
     pub fn run_of_job(&self, job: &str) -> Result<Option<Option<String>>, StoreError> {
         let found = self.rows("to tell a job", sql::RUN_OF_JOB, values![job], |row| row.get(0))?;
         Ok(found.into_iter().next())
