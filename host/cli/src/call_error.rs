@@ -105,7 +105,7 @@ pub(crate) enum CallError {
     /// The station's program is not beside this one.
     #[error(
         "the station is a program of its own, and {} is not there; build it with `cargo build --release --package \
-         halfrow-station`, or install it with `cargo install --path host/station`", path.display()
+         halfrow-station`, or install it with `cargo install --locked --path host/station`", path.display()
     )]
     StationMissing { path: PathBuf },
     /// The station's program could not be started.
