@@ -58,6 +58,14 @@ const LINES: &[Line] = &[
         place: "`soak` of a result",
     },
     Line {
+        word: "frame",
+        meaning: "The head of a table with a line for each streamed frame: how many of its samples came back other than the model has them, where \
+                  the first of them is, and how far off the worst is.",
+        fault: "the board's, if a frame has differences",
+        act: "Look at what the line `suspect` says.",
+        place: "`frames` of a result",
+    },
+    Line {
         word: "differs",
         meaning: "A frame of a soak that came out wrong, and when.",
         fault: "the board's",
