@@ -56,6 +56,15 @@ impl Notify {
         self.tell("WATCHDOG=1");
     }
 
+    /// What is told in place of systemd's own socket, at one in `folder`.
+    #[cfg(test)]
+    pub(super) fn heard_in(folder: &std::path::Path) -> (UnixDatagram, Self) {
+        let path = folder.join("notify");
+        let systemd = UnixDatagram::bind(&path).unwrap();
+        let address = SocketAddr::from_pathname(path).unwrap();
+        (systemd, Self(Some((UnixDatagram::unbound().unwrap(), address))))
+    }
+
     fn tell(&self, what: &str) {
         if let Some((socket, address)) = &self.0
             && let Err(error) = socket.send_to_addr(what.as_bytes(), address)
@@ -72,10 +81,7 @@ mod tests {
     #[test]
     fn a_socket_hears_what_systemd_would() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("notify");
-        let systemd = UnixDatagram::bind(&path).unwrap();
-        let notify =
-            Notify(Some((UnixDatagram::unbound().unwrap(), SocketAddr::from_pathname(path).unwrap())));
+        let (systemd, notify) = Notify::heard_in(folder.path());
         notify.ready();
         notify.works();
         let heard = || {

@@ -96,12 +96,19 @@ fn at_work(signal: &Signal, engine: &Engine, notify: &Notify) -> Result<StoppedB
         if engine.has_ended() {
             return Err(EngineEnded);
         }
-        if told.elapsed() >= TELL && engine.is_well() {
+        if told.elapsed() >= TELL {
             told = Instant::now();
-            notify.works();
+            tell(engine, notify);
         }
         Ok(())
     })
+}
+
+/// Tells systemd that the engine works, if it does.
+fn tell(engine: &Engine, notify: &Notify) {
+    if engine.is_well() {
+        notify.works();
+    }
 }
 
 #[cfg(test)]
@@ -111,7 +118,22 @@ mod tests {
     use std::thread;
 
     use super::*;
+    use crate::engine::tests::stopped;
     use crate::store::{Folder, Store};
+
+    #[test]
+    fn systemd_is_not_told_that_an_engine_works_that_does_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let (_, engine) = stopped(folder.path());
+        let (systemd, notify) = Notify::heard_in(folder.path());
+        systemd.set_nonblocking(true).unwrap();
+        for (seconds, is_told) in [(6, false), (0, true)] {
+            engine.silent_for(Duration::from_secs(seconds));
+            tell(&engine, &notify);
+            let mut heard = [0; 64];
+            assert_eq!(systemd.recv(&mut heard).ok(), is_told.then_some("WATCHDOG=1".len()));
+        }
+    }
 
     /// Without systemd's watchdog, the program's end is all that can be noticed from outside.
     #[test]

@@ -181,6 +181,12 @@ impl Engine {
         live.worked.is_some_and(|worked| worked.elapsed() < SILENT)
     }
 
+    /// Makes it look as if its thread, which has ended, was last seen to work this long ago.
+    #[cfg(test)]
+    pub(crate) fn silent_for(&self, time: Duration) {
+        self.live.lock().worked = Instant::now().checked_sub(time);
+    }
+
     /// Whether its thread has ended, which it does unasked only because of a fault. It may also be alive and silent,
     /// as while a disk is slow.
     #[must_use]
@@ -232,5 +238,44 @@ pub(crate) fn in_time(until: Option<Instant>) -> Result<(), ScanError> {
 fn work(at_work: AtWork, inbox: &Receiver<Input>) {
     if let Err(fault) = guarded(|| at_work.run(inbox)) {
         tracing::error!("{fault}");
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use super::*;
+    use crate::store::Folder;
+
+    /// A station with one lane, whose settings are in `folder`.
+    pub(crate) fn station(folder: &Path) -> (Settings, Arc<Engine>) {
+        let path = folder.join("station.toml");
+        let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
+        fs::write(&path, format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{lane}")).unwrap();
+        fs::write(folder.join("plan.toml"), include_str!("../../tests/station/quick.toml")).unwrap();
+        let settings = Settings::load(&path).unwrap();
+        let store = Store::open(&Folder::new(&settings.data)).unwrap();
+        let engine = Engine::start(settings.clone(), store, "lane".into()).unwrap();
+        (settings, Arc::new(engine))
+    }
+
+    /// The same with an engine that has ended, so that nothing shows that it works.
+    pub(crate) fn stopped(folder: &Path) -> (Settings, Arc<Engine>) {
+        let (settings, engine) = station(folder);
+        engine.close(None);
+        (settings, engine)
+    }
+
+    #[test]
+    fn an_engine_that_was_silent_for_five_seconds_is_not_well() {
+        let folder = tempfile::tempdir().unwrap();
+        let (_, engine) = stopped(folder.path());
+        let is_well = [0, 4, 6].map(|seconds| {
+            engine.silent_for(Duration::from_secs(seconds));
+            engine.is_well()
+        });
+        assert_eq!(is_well, [true, true, false]);
     }
 }

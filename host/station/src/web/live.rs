@@ -193,6 +193,13 @@ impl Live {
         self.asked.lock().clear();
     }
 
+    /// Tells that the engine works, if it does.
+    fn beat(&self, engine: &Engine) {
+        if engine.is_well() {
+            self.tell(EventKind::Beat(self.moment()));
+        }
+    }
+
     fn tell(&self, what: EventKind) {
         let mut now = self.now.lock();
         match &what {
@@ -242,9 +249,7 @@ fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
         }
         if beat.elapsed() >= BEAT {
             beat = Instant::now();
-            if engine.is_well() {
-                live.tell(EventKind::Beat(live.moment()));
-            }
+            live.beat(engine);
         }
     }
 }
@@ -252,6 +257,7 @@ fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::tests::stopped;
 
     /// `assets/live.js` takes everything anew when a number is not the one after the last.
     #[test]
@@ -268,6 +274,31 @@ mod tests {
             matches!(answer.try_recv(), Err(oneshot::error::TryRecvError::Closed)),
             "it is not waited for"
         );
+    }
+
+    /// docs/station-lanes.md: a page does not show verdicts as live when it hears no beat.
+    #[test]
+    fn an_engine_that_does_not_work_has_no_beat() {
+        let folder = tempfile::tempdir().unwrap();
+        let (_, engine) = stopped(folder.path());
+        let live = Live::of(Vec::new());
+        let (_, mut page) = live.follow();
+        engine.silent_for(Duration::from_secs(6));
+        live.beat(&engine);
+        assert!(page.try_recv().is_err());
+        engine.silent_for(Duration::ZERO);
+        live.beat(&engine);
+        assert!(matches!(page.try_recv().unwrap().what, EventKind::Beat(_)));
+    }
+
+    /// docs/station-operator.md: what comes more than five seconds after the news that its page heard last is refused.
+    #[test]
+    fn a_request_may_come_five_seconds_after_the_beat_that_its_page_heard() {
+        let begun = Instant::now().checked_sub(Duration::from_secs(100)).unwrap();
+        let live = Live { begun, ..Live::of(Vec::new()) };
+        let until = |ms: u64| live.until(&format!("{}-{ms}", live.start));
+        assert_eq!(until(99_000).unwrap(), Some(begun + Duration::from_secs(104)));
+        assert!(matches!(until(94_000), Err(ScanError::Late)));
     }
 
     /// A lane that is drawn anew while its run goes on.

@@ -283,27 +283,18 @@ impl App {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::fs;
+pub(super) mod tests {
     use std::sync::Arc;
 
     use tokio::runtime::Builder;
 
     use super::*;
-    use crate::engine::Engine;
-    use crate::settings::Settings;
-    use crate::store::{Folder, Store};
+    use crate::engine::{self, Engine};
     use crate::web::access::Access;
 
-    /// A station with one lane, its settings in `folder`.
-    fn station(folder: &std::path::Path) -> (App, Arc<Engine>) {
-        let path = folder.join("station.toml");
-        let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
-        fs::write(&path, format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{lane}")).unwrap();
-        fs::write(folder.join("plan.toml"), include_str!("../../tests/station/quick.toml")).unwrap();
-        let settings = Settings::load(&path).unwrap();
-        let store = Store::open(&Folder::new(&settings.data)).unwrap();
-        let engine = Arc::new(Engine::start(settings.clone(), store, "lane".into()).unwrap());
+    /// The pages of a station with one lane, whose settings are in `folder`.
+    pub(in crate::web) fn station(folder: &std::path::Path) -> (App, Arc<Engine>) {
+        let (settings, engine) = engine::tests::station(folder);
         let weber = User { name: "weber".to_owned(), who: Who::Operator };
         let access = Access::of(&settings, weber).unwrap();
         (App::new(settings, Arc::clone(&engine), access, Vec::new()).unwrap(), engine)

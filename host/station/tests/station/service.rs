@@ -97,13 +97,15 @@ fn a_start_that_looks_at_all_of_the_database_says_so_and_asks_systemd_for_time()
         serving.complained()
     );
     let mut heard = vec![];
-    while heard.last().is_none_or(|heard| heard != "READY=1") {
+    // It then goes on to say that it works.
+    while heard.last().is_none_or(|heard| heard != "WATCHDOG=1") {
         let mut buffer = [0; 64];
         let read = systemd.recv(&mut buffer).unwrap();
         heard.push(String::from_utf8(buffer[..read].to_vec()).unwrap());
     }
     let seconds = UNIT.lines().find_map(|line| line.strip_prefix("TimeoutStartSec=")).unwrap();
     assert_eq!(heard[0], format!("EXTEND_TIMEOUT_USEC={seconds}000000"));
+    assert_eq!(heard[heard.len() - 2..], ["READY=1", "WATCHDOG=1"]);
     // A start that checks nothing prints nothing.
     drop(serving);
     assert_eq!(station.serve().complained(), "");

@@ -181,3 +181,31 @@ fn outbox(text: &mut Text, settings: &Settings, unsent: Option<&[Unsent]>) {
         of.put(&[("sink", sink)], *age);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use axum::http::HeaderMap;
+    use tokio::runtime::Builder;
+
+    use super::*;
+    use crate::web::metrics::text::Format;
+    use crate::web::request_guard::tests::station;
+
+    #[test]
+    fn an_engine_that_does_not_work_is_not_said_to_be_well() {
+        let folder = tempfile::tempdir().unwrap();
+        let (app, engine) = station(folder.path());
+        engine.close(None);
+        let runtime = Builder::new_current_thread().enable_all().build().unwrap();
+        for (seconds, line) in [(0, "\nhalfrow_engine_well 1\n"), (6, "\nhalfrow_engine_well 0\n")] {
+            engine.silent_for(Duration::from_secs(seconds));
+            let mut text = Text::new(Format::asked(&HeaderMap::new()));
+            let visit = app.stranger(&HeaderMap::new());
+            runtime.block_on(write(&mut text, &app, &visit)).unwrap();
+            let text = text.end();
+            assert!(text.contains(line), "{text}");
+        }
+    }
+}
