@@ -256,6 +256,22 @@ mod tests {
     }
 
     #[test]
+    fn the_pictures_of_a_run_take_no_more_than_32_mib() {
+        for (earlier, kept) in [((32 << 20) - 10_000, 4), (32 << 20, 1)] {
+            let folder = tempfile::tempdir().unwrap();
+            let (depth, phase) = (BitDepth::Twelve, Phase::default());
+            let first = KeptFrame { seq: 1, attempt: 1, index: 0, depth, phase };
+            let file = File::create(folder.path().join(first.name(View::In))).unwrap();
+            file.set_len(earlier).unwrap();
+            keep(folder.path(), (2, 1), &[("a", true)], &[wrong(0)]);
+            assert_eq!(names(folder.path()).unwrap().len(), kept);
+            let told = fs::read_to_string(folder.path().join(NOT_KEPT)).unwrap_or_default();
+            let expected = "the frames of the run take more than 33554432 bytes";
+            assert_eq!(told.matches(expected).count(), 4 - kept, "{told}");
+        }
+    }
+
+    #[test]
     fn a_picture_for_which_the_judge_had_no_room_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let frames = [("a", true), ("a", true), ("b", false), ("b", true), ("c", true)];

@@ -239,6 +239,23 @@ mod tests {
     }
 
     #[test]
+    fn a_plan_with_more_than_64_mib_of_files_is_not_bundled() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.toml");
+        let text = include_str!("../../tests/station/quick.toml").to_owned();
+        let mut plan = Plan::parse(&path, text).unwrap();
+        for (more, is_taken) in [(0, true), (1, false)] {
+            let frames = fs::File::create(folder.path().join("frames")).unwrap();
+            frames.set_len((64 << 20) + more).unwrap();
+            let sha256 = sha256([fs::read(folder.path().join("frames")).unwrap()]);
+            plan.files = vec![FileHash { path: "frames".to_owned(), sha256 }];
+            let refused = Unpacked::of(&path, &plan).err();
+            let is_large = matches!(refused, Some(BundleError::TooLarge { bytes: 67_108_865 }));
+            assert_eq!((refused.is_none(), is_large), (is_taken, !is_taken), "{refused:?}");
+        }
+    }
+
+    #[test]
     fn a_bundle_of_a_later_format_is_not_taken_for_one_of_this() {
         let unpacked = |schema| {
             let bundle = Bundle { schema, text: "text".to_owned(), files: Vec::new() };
