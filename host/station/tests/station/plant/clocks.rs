@@ -3,7 +3,8 @@
 use std::fs;
 use std::process::Command;
 
-use halfrow_station::outbox::Sink as _;
+use halfrow_station::outbox::{HeardClock, Sink as _};
+use halfrow_station::record::RunHead;
 use halfrow_station::store::{SINK_OF_PLANT, StoreError};
 
 use super::sent::sink;
@@ -11,7 +12,7 @@ use super::server::Server;
 use super::waiting::{await_sent, station};
 use crate::clocks::Clocks;
 use crate::common::{now_ms, program};
-use crate::history::made::{End, HOUR_MS, Made, Run};
+use crate::history::made::{End, HOUR_MS, Made, Run, id};
 use crate::lanes::floor::SERIALS;
 
 /// Makes the server's clock an hour fast for whoever connects from now on.
@@ -45,6 +46,29 @@ fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
     // A station that only sends elsewhere only needs to be in order with itself.
     made.store.sends_to(vec!["mes".to_owned()]).unwrap();
     begun(&mut made, "S3").unwrap();
+}
+
+/// docs/plant.md: five minutes are tolerated.
+#[test]
+fn clocks_may_be_four_minutes_apart_and_not_six() {
+    for (minutes, is_taken) in [(4_i64, true), (-4, true), (6, false), (-6, false)] {
+        let mut made = Made::new();
+        made.store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
+        // Ids go on behind the last run's, whatever the clock says.
+        let (head, plan) = made.begin(&now_of("S1"));
+        let [id, unit_id] = [1, 2].map(|number| id(head.started_ms + minutes * 60_000, 1000 + number));
+        let [serial, lane] = ["S2", "2"].map(str::to_owned);
+        let behind = made.store.begin(RunHead { id, unit_id, serial, lane, ..head }, &plan);
+        let is_ahead = matches!(&behind, Err(StoreError::DatedAhead { minutes: 6 }));
+        assert_eq!((behind.is_ok(), is_ahead), (minutes != 6, minutes == 6), "{minutes} min: {behind:?}");
+        let mut made = Made::new();
+        made.store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
+        made.store.heard_plant(HeardClock::shows(now_ms()));
+        let run = Run { started_ms: now_ms() + minutes * 60_000, ..now_of("S1") };
+        let apart = made.try_begin(&run);
+        let is_apart = matches!(&apart, Err(StoreError::ClockApart { minutes: 6 }));
+        assert_eq!((apart.is_ok(), is_apart), (is_taken, !is_taken), "{minutes} min: {apart:?}");
+    }
 }
 
 #[test]
