@@ -75,3 +75,39 @@ impl AsyncWrite for WriteTimeout {
         Pin::new(&mut self.stream).poll_shutdown(to)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use tokio::runtime::Builder;
+    use tokio::time::Instant;
+
+    use super::*;
+
+    #[test]
+    fn who_takes_nothing_for_half_a_minute_is_given_nothing_more() {
+        let runtime = Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+            let stream = TcpStream::connect(listener.local_addr().unwrap()).await.unwrap();
+            let mut stream = WriteTimeout::new(stream);
+            let written = |stream: &mut WriteTimeout, poll: Poll<io::Result<usize>>| {
+                stream.settled(&mut Context::from_waker(std::task::Waker::noop()), poll)
+            };
+            let begun = Instant::now();
+            assert!(written(&mut stream, Poll::Pending).is_pending());
+            let until = stream.stuck.as_ref().unwrap().deadline();
+            // The timer counts whole milliseconds.
+            let tick = Duration::from_millis(1);
+            let half_a_minute =
+                begun + Duration::from_secs(30) - tick..=Instant::now() + Duration::from_secs(30) + tick;
+            assert!(half_a_minute.contains(&until), "{:?}", until - begun);
+            // What is taken meanwhile gives it as long again.
+            assert!(written(&mut stream, Poll::Ready(Ok(1))).is_ready());
+            assert!(stream.stuck.is_none());
+            assert!(written(&mut stream, Poll::Pending).is_pending());
+            stream.stuck.as_mut().unwrap().as_mut().reset(Instant::now() - tick);
+            let Poll::Ready(Err(error)) = written(&mut stream, Poll::Pending) else { panic!("it is over") };
+            assert_eq!(error.kind(), io::ErrorKind::TimedOut);
+        });
+    }
+}

@@ -28,7 +28,8 @@ impl Response {
     }
 }
 
-fn connected(port: u16) -> TcpStream {
+/// A connection to this port.
+pub(super) fn connected(port: u16) -> TcpStream {
     let stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
     stream.set_read_timeout(Some(HANG)).unwrap();
     stream
@@ -148,7 +149,7 @@ impl Request {
         BufReader::new(stream).lines().map_while(Result::ok)
     }
 
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let mut text = format!("{} {} HTTP/1.1\r\n", self.method, self.path);
         for (name, value) in &self.headers {
             text += &format!("{name}: {value}\r\n");

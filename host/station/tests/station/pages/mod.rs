@@ -10,5 +10,6 @@ mod languages;
 mod places;
 mod prompt;
 mod secrets;
+mod slow;
 pub(crate) mod station;
 mod table;

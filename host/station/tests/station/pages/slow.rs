@@ -1,0 +1,41 @@
+//! Requests that arrive slowly, or not at all.
+
+use std::io::{Read as _, Write as _};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::http::connected;
+use super::station::{SERIALS, Station};
+
+/// What is answered to the first part of `text`, and to `rest` after it.
+fn answered(port: u16, first: &str, rest: &str) -> String {
+    let mut stream = connected(port);
+    stream.write_all(first.as_bytes()).unwrap();
+    stream.write_all(rest.as_bytes()).unwrap();
+    let mut answer = Vec::new();
+    // Whoever ends a connection to which something is still sent resets it.
+    let _ = stream.read_to_end(&mut answer);
+    String::from_utf8_lossy(&answer).lines().next().unwrap_or_default().to_owned()
+}
+
+/// docs/station-lanes.md: a request has 10 s for its head, and a form 10 s. Nothing else ends either of them before 30 s.
+#[test]
+fn a_request_that_does_not_arrive_holds_no_place() {
+    const OTHERWISE: Duration = Duration::from_secs(29);
+    let station = Station::private(1);
+    let serving = station.serve();
+    let here = serving.here();
+    let (look, form) = (here.get("/").text(), here.post("/scan", &[("text", SERIALS[0])]).text());
+    let begun = Instant::now();
+    thread::scope(|scope| {
+        for (text, late, in_time) in [(&look, "", "200"), (&form, "408", "200")] {
+            let (first, rest) = text.split_at(text.len() - 9);
+            scope.spawn(move || {
+                let ended = answered(serving.port, first, "");
+                assert!(begun.elapsed() < OTHERWISE && ended.contains(late), "{first}: {ended}");
+            });
+            let ended = answered(serving.port, first, rest);
+            assert!(ended.contains(in_time), "{text}: {ended}");
+        }
+    });
+}
