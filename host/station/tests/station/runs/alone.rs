@@ -4,7 +4,6 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::sync::mpsc;
 use std::thread;
-use std::time::{Duration, Instant};
 
 use halfrow::Verdict;
 use halfrow_station::store::{SharedStore, Store};
@@ -13,7 +12,7 @@ use super::bench::{Did, PLAN, Station, program};
 use super::killed_lane::run_in;
 use super::unsaved::calls;
 use crate::clocks::Clocks;
-use crate::common::{held_up, script};
+use crate::common::{held_up, script, silent_board, until_found};
 use crate::history::made::{End, Made, Run};
 use crate::lanes::floor::HANG;
 
@@ -58,25 +57,20 @@ fn a_run_ends_no_earlier_than_it_began_though_the_clock_is_set_back() {
     station.run("CAT00017", "mock");
     let clocks = Clocks::in_folder(&station.path(""));
     let mut program = Command::new(program());
-    program.args(station.run_arguments("CAT00001", "mock")).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let (board, target) = silent_board();
+    program.args(station.run_arguments("CAT00001", &target)).stdout(Stdio::piped()).stderr(Stdio::piped());
     let run = clocks.of(&mut program).spawn().unwrap();
     spool(&station);
     clocks.ahead(-3600, 0);
+    drop(board);
     let (_, record, _) = station.saved(&Did::from(run.wait_with_output().unwrap()));
-    assert!(record.ended_ms >= record.run.started_ms, "{record:?}");
+    assert_eq!(record.ended_ms, record.run.started_ms, "{record:?}");
 }
 
 /// The spool of the station's run, once it exists.
 fn spool(station: &Station) -> std::path::PathBuf {
-    let begun = Instant::now();
-    loop {
-        let run = fs::read_dir(station.data().join("spool")).unwrap().next();
-        if let Some(run) = run {
-            return run.unwrap().path();
-        }
-        assert!(begun.elapsed() < HANG, "no run");
-        thread::sleep(Duration::from_millis(10));
-    }
+    let spool = station.data().join("spool");
+    until_found("a run", || fs::read_dir(&spool).unwrap().next().ok_or("none")).unwrap().path()
 }
 
 /// Its two threads are the last ones that a run starts.
