@@ -71,7 +71,7 @@ fn the_board_of_a_place_is_judged_where_labgrid_says_and_the_place_given_back() 
 fn the_wait_for_a_place_does_not_count_as_time_of_the_run() {
     let station = station(r#"{"held": {"host": "127.0.0.1", "port": 1, "speed": 9600}}"#, "");
     let late = LENDER.replace("[ ! -s answer ]", "sleep 0.3\n[ ! -s answer ]");
-    fs::write(station.path("lender"), late).unwrap();
+    program_of(&station.path(""), "lender", &late);
     let mut running = station.start();
     running.test("1", SERIALS[0]);
     running.state("1", "ERROR");
@@ -215,7 +215,7 @@ fn a_run_ends_when_what_has_its_place_ends() {
     let answer = format!(r#"{{"held": {{"host": "127.0.0.1", "port": {port}}}}}"#);
     let station = station(&answer, "");
     let lender = LENDER.replace("cat > /dev/null", "while [ ! -e gone ]; do sleep 0.1; done\nexit 7");
-    fs::write(station.path("lender"), lender).unwrap();
+    program_of(&station.path(""), "lender", &lender);
     fs::write(station.path("plan.toml"), long_plan()).unwrap();
     let mut running = station.start();
     running.test("1", SERIALS[0]);
