@@ -20,7 +20,7 @@ fn picture(level: u8) -> Vec<u8> {
     bytes
 }
 
-/// An engineer with a plan, and a station that gets it from the plant.
+/// An engineer with a plan, and a station that gets it from the plant, in `own` of a folder.
 pub(super) struct Published {
     pub(super) server: Server,
     folder: TempDir,
@@ -30,7 +30,7 @@ pub(super) struct Published {
 impl Published {
     pub(super) fn new() -> Self {
         let (server, folder) = (Server::prepared(), crate::common::folder());
-        fs::create_dir(folder.path().join("frames")).unwrap();
+        fs::create_dir_all(folder.path().join("own/frames")).unwrap();
         let made = Self { server, folder, trusted: String::new() };
         let trusted = made.did(&["plan", "key", &made.path("engel.key")]).said.trim().to_owned();
         assert!(trusted.starts_with("ed25519:"), "{trusted}");
@@ -44,7 +44,7 @@ impl Published {
     }
 
     pub(super) fn path(&self, name: &str) -> String {
-        self.folder.path().join(name).display().to_string()
+        self.folder.path().join("own").join(name).display().to_string()
     }
 
     /// Writes the plan in this version, with a picture of this level.
@@ -372,7 +372,7 @@ fn a_plan_whose_product_has_a_slash_is_not_published() {
 #[test]
 fn what_is_no_plan_of_its_own_folder_or_no_key_is_refused() {
     let made = Published::new();
-    fs::write(made.folder.path().parent().unwrap().join("outside.pgm"), picture(9)).unwrap();
+    fs::write(made.path("../outside.pgm"), picture(9)).unwrap();
     let text = fs::read_to_string(made.path("plan.toml")).unwrap();
     fs::write(made.path("plan.toml"), text.replace("frames/a.pgm", "../outside.pgm")).unwrap();
     let outside = made.publish("engel.key");
