@@ -220,8 +220,8 @@ fn say(text: &str) {
     eprintln!("{text}");
 }
 
-/// Runs a trial of this shape; returns what was found, and what happened.
-fn tried(shape: Shape) -> (Found, &'static Happened) {
+/// Runs a trial of this shape; returns it with the folders of its stations, and what was found.
+fn tried(shape: Shape) -> (Trial, Vec<TempDir>, Found) {
     let trial = Trial::begin(shape);
     let begun = Instant::now();
     let folders = trial.run();
@@ -233,7 +233,7 @@ fn tried(shape: Shape) -> (Found, &'static Happened) {
         folders.len(),
         trial.happened
     ));
-    (found, trial.happened)
+    (trial, folders, found)
 }
 
 /// Some stations and more than a hundred boards; nobody waits for a lease to run out.
@@ -242,17 +242,31 @@ const SHORT: Shape =
 
 #[test]
 fn whatever_happens_to_stations_every_job_is_judged_once() {
-    let (found, happened) = tried(SHORT);
+    let (trial, folders, found) = tried(SHORT);
     assert_eq!(found.wrong(), Vec::<String>::new());
+    let happened = trial.happened;
     for count in [&happened.kills, &happened.cuts, &happened.stalls] {
         assert!(count.load(Ordering::Relaxed) > 0, "{happened:?}");
     }
+    // The control: what the other control leaves in order is found as well.
+    let of_station = rusqlite::Connection::open(process::data(&folders[0]).join("station.db")).unwrap();
+    let other_hash = "UPDATE run SET record_sha256 = hex(zeroblob(32))
+        WHERE id = (SELECT min(id) FROM run WHERE state = 'final')";
+    assert_eq!(of_station.execute(other_hash, []).unwrap(), 1);
+    let mut plant = lock(&trial.server).client("plant");
+    let counted = "UPDATE day_count SET runs = runs + 1 WHERE ctid IN (SELECT ctid FROM day_count LIMIT 1)";
+    let undone = "UPDATE job SET run_id = 'none' WHERE id = (SELECT min(id) FROM job)";
+    for change in [counted, undone] {
+        assert_eq!(plant.execute(change, &[]).unwrap(), 1);
+    }
+    let Found { unlike, miscounted, undone, .. } = Found::of(&trial, &folders);
+    assert_eq!((unlike, miscounted, undone), (2, 1, 1));
 }
 
 /// The control: what would happen if stations that come too late were believed.
 #[test]
 fn without_fences_boards_are_judged_twice_at_once_and_jobs_twice() {
-    let (found, _) = tried(Shape { boards: 60, processes: 0, restarts: 0, is_fenced: false, ..SHORT });
+    let (.., found) = tried(Shape { boards: 60, processes: 0, restarts: 0, is_fenced: false, ..SHORT });
     assert!(found.doubles > 0 && found.at_once > 0, "{found:?}");
     assert_eq!((found.undone, found.unlike), (0, 0), "{found:?}");
 }
@@ -263,8 +277,9 @@ fn a_hundred_stations_judge_ten_thousand_boards_once_each_whatever_happens() {
     let boards = std::env::var("HALFROW_TRIAL_BOARDS").map_or(10_000, |count| count.parse().unwrap());
     let stall = Some(Duration::from_secs(33));
     let (clients, processes, networks, restarts) = (80, 16, 4, 5);
-    let (found, happened) = tried(Shape { boards, clients, processes, networks, restarts, stall, ..SHORT });
+    let (trial, _, found) = tried(Shape { boards, clients, processes, networks, restarts, stall, ..SHORT });
     assert_eq!(found.wrong(), Vec::<String>::new());
+    let happened = trial.happened;
     let least = [(&happened.kills, 10), (&happened.cuts, 10), (&happened.stalls, 5)];
     for (count, percent) in least {
         assert!(count.load(Ordering::Relaxed) * 100 >= boards * percent, "{happened:?}");
