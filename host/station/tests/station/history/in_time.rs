@@ -116,7 +116,7 @@ pub(crate) fn served(get: &dyn Fn(&str) -> Response, runs: u64, draw: &mut Draw)
     // A unit exists from its first run on; some numbers have none.
     let units = (0..400).map(|_| {
         let path = format!("/unit?serial={}", serial(draw.below(runs)));
-        timed(|| drop(get(&path)))
+        timed(|| assert!([200, 404].contains(&get(&path).status), "{path}"))
     });
     told("/unit", units.collect(), "wanted p95 20 ms");
     for (path, wanted) in [
