@@ -88,11 +88,9 @@ pub(crate) fn replaced_by_pipe(path: &Path) {
 
 /// The writing end of the FIFO at `path`, as soon as a reader has opened it. The reader waits until it is dropped.
 pub(crate) fn held_up(path: &Path) -> File {
-    let begun = Instant::now();
-    while !fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo()) {
-        assert!(begun.elapsed() < HANG, "{} is no FIFO", path.display());
-        thread::sleep(Duration::from_millis(10));
-    }
+    until(&format!("a FIFO at {}", path.display()), || {
+        fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo())
+    });
     let (sender, opened) = mpsc::channel();
     let fifo = path.to_owned();
     thread::spawn(move || sender.send(File::options().write(true).open(fifo)));
@@ -186,6 +184,11 @@ impl From<Output> for Did {
     }
 }
 
+/// What the program does when it is called so.
+pub(crate) fn did(arguments: &[&str]) -> Did {
+    Command::new(program()).args(arguments).output().unwrap().into()
+}
+
 /// Makes the database refuse new entries in the audit.
 pub(crate) const NO_AUDIT: &str =
     "CREATE TRIGGER full BEFORE INSERT ON audit BEGIN SELECT RAISE(FAIL, 'the disk is full'); END";
@@ -197,16 +200,12 @@ pub(crate) fn check(data: &Path) -> Did {
 
 /// Waits until the log has `count` lines with `of`, and fails if it has more.
 pub(crate) fn logged(log: &Path, count: usize, of: &str) {
-    let begun = Instant::now();
-    loop {
+    until_found(&format!("{count} of {of}"), || {
         let text = fs::read_to_string(log).unwrap_or_default();
         let found = text.lines().filter(|line| line.contains(of)).count();
-        if found == count {
-            return;
-        }
-        assert!(found < count && begun.elapsed() < HANG, "{found} of {of}: {text}");
-        thread::sleep(Duration::from_millis(50));
-    }
+        assert!(found <= count, "{found} of {of}: {text}");
+        if found == count { Ok(()) } else { Err(text) }
+    });
 }
 
 /// Reads the database of this folder without the program: the first value of each row.

@@ -7,17 +7,13 @@ use std::time::{Duration, SystemTime};
 
 use serde_json::Value;
 
-use crate::common::{Did, PLAN, program};
+use crate::common::{Did, PLAN, did, program};
 use crate::held;
 use crate::runs::bench::Station;
 
 const SCHEMA: &str = include_str!("../../schema/station-1.json");
 
 const RECORD: &str = include_str!("../../schema/record-1.json");
-
-fn did(arguments: &[&str]) -> Did {
-    Command::new(program()).args(arguments).output().unwrap().into()
-}
 
 /// The printed document, which must conform to the schema and have the process's own exit code.
 fn document(did: &Did) -> Value {

@@ -4,11 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::common::{Did, folder, program};
-
-fn did(arguments: &[&str]) -> Did {
-    Command::new(program()).args(arguments).output().unwrap().into()
-}
+use crate::common::{Did, did, folder};
 
 fn text(folder: &Path, page: &str) -> String {
     fs::read_to_string(folder.join(page)).unwrap_or_else(|error| panic!("{page}: {error}"))

@@ -7,7 +7,7 @@ use std::process::Command;
 use halfrow_station::plan::Plan;
 use halfrow_station::store::{Plant, Wanted};
 
-use super::{any, job, settings, shared};
+use super::{any, job, settings, shared, states};
 use crate::common::{Did, PLAN, folder, program};
 use crate::plant::server::Server;
 
@@ -35,11 +35,6 @@ fn worked(server: &Server, (folder, name): (&Path, &str), plans: &[&Plan]) -> Di
 
 fn add(plant: &mut Plant, plan: &Plan, wanted: &Wanted, count: u32) {
     plant.add_jobs(&job(plan, wanted), count).unwrap();
-}
-
-/// The state of each job, and how often it was claimed, in the order in which they were added.
-fn states(server: &Server) -> Vec<Vec<String>> {
-    server.rows("SELECT state, attempts FROM job ORDER BY id")
 }
 
 /// A flaky FAIL would be its last judgement.

@@ -5,13 +5,15 @@ use std::sync::Mutex;
 use std::thread;
 
 use halfrow::Verdict;
-use halfrow_station::check::check_plant;
 use halfrow_station::record::{JobClaim, Record, RunCause};
-use halfrow_station::store::{Claim, Entry, JobState, Kind, Parcel, Plant, Snapshot, Wanted, Worker, jobs};
+use halfrow_station::store::{
+    Claim, Entry, JobState, Kind, Parcel, Plant, Snapshot, Turn, Waiter, Wanted, Worker, jobs,
+};
 
-use super::{any, board, job, plan, run_out, shared, with_a_job, worker};
+use super::{any, board, job, plan, run_out, shared, states, with_a_job, worker};
 use crate::common::{engel, reason};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
+use crate::plant::checked::faults;
 use crate::plant::server::Server;
 
 /// The `number`-th run of this unit, in the form in which its station sends it.
@@ -31,11 +33,6 @@ fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
     assert_eq!(Record::parse(text.as_bytes()).unwrap(), *record);
     let sha256 = halfrow::result::sha256([text.as_bytes()]);
     Parcel::Run { record, text, sha256 }
-}
-
-/// The state of each job, and its attempts.
-fn states(server: &Server) -> Vec<Vec<String>> {
-    server.rows("SELECT state, attempts FROM job ORDER BY id")
 }
 
 #[test]
@@ -75,6 +72,32 @@ fn a_job_is_had_by_one_at_a_time_and_so_is_a_board() {
     assert_eq!(server.rows("SELECT count(*), count(DISTINCT id), sum(fence) FROM job"), [["40", "40", "40"]]);
     let once = "SELECT count(*) FROM run JOIN job ON job.run_id = run.id WHERE verdict = 'PASS'";
     assert_eq!(server.rows(once), [["40"]]);
+}
+
+/// docs/plant.md: for 30 s by the plant's clock, from when it was given or renewed last.
+#[test]
+fn a_job_and_a_board_are_held_for_half_a_minute() {
+    let (server, mut plant, _) = with_a_job();
+    plant.share(&board(2, "ulx3s"), "engel").unwrap();
+    let one = |text: &str| -> i64 { server.rows(text)[0][0].parse().unwrap() };
+    let now_ms = || one("SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)");
+    let assert_held = |since_ms: i64, of: &str| {
+        let given_ms = one(&format!("SELECT until_ms FROM {of}")) - 30_000;
+        assert!((since_ms..=now_ms()).contains(&given_ms), "{of}: {given_ms}, and not since {since_ms}");
+    };
+    let since_ms = now_ms();
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    assert_held(since_ms, "job");
+    assert_held(since_ms, "board WHERE name = 'shelf-0'");
+    run_out(&server);
+    let since_ms = now_ms();
+    assert!(plant.renew_claim(&claim).unwrap());
+    assert_held(since_ms, "job");
+    assert_held(since_ms, "board WHERE name = 'shelf-0'");
+    let since_ms = now_ms();
+    let turn = plant.wait(&Waiter::new("ulx3s", "weber", "12").unwrap()).unwrap();
+    assert!(matches!(turn, Turn::Held(_)), "{turn:?}");
+    assert_held(since_ms, "board WHERE name = 'shelf-2'");
 }
 
 /// What a worker does that was stopped for too long, and what the next one does. Returns `nth` of all runs, 0 for one that does
@@ -252,9 +275,7 @@ fn fifth_claim(end: End, meanwhile: impl Fn(&mut Plant, &str)) -> Server {
 
 /// Asserts that the plant's tables are those that its records give.
 fn assert_well(server: &Server) {
-    let snapshot = Snapshot::of_plant(Plant::connect(&server.address()).unwrap()).unwrap();
-    let checked = check_plant(&snapshot, &mut |_| ()).unwrap();
-    assert!(checked.faults.is_empty(), "{:?}", checked.faults);
+    assert_eq!(faults(server, "plant"), Vec::<String>::new());
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! Stations that take jobs while their own disk accepts nothing.
 
 use std::process::{Child, Command, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
 
 use halfrow::Verdict;
 use halfrow_station::settings::Settings;
@@ -11,7 +9,7 @@ use nix::unistd::Pid;
 use tempfile::TempDir;
 
 use super::{any, at_work, job, judged, plan, settings, shared, with_a_job};
-use crate::common::{Did, folder, program, query};
+use crate::common::{Did, folder, program, query, until_found};
 use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
 
@@ -73,15 +71,10 @@ impl Drop for Worker {
 
 /// Waits until this query of the plant has rows.
 fn await_rows(server: &Server, text: &str) -> Vec<Vec<String>> {
-    let until = Instant::now() + HANG;
-    loop {
+    until_found(text, || {
         let rows = server.rows(text);
-        if !rows.is_empty() {
-            return rows;
-        }
-        assert!(Instant::now() < until, "{:?}", server.rows("SELECT * FROM job"));
-        thread::sleep(Duration::from_millis(20));
-    }
+        if rows.is_empty() { Err(server.rows("SELECT * FROM job")) } else { Ok(rows) }
+    })
 }
 
 /// A plant with a job and a board, and a station whose database refuses this.

@@ -88,6 +88,11 @@ pub(crate) fn worker(station: &str) -> Worker {
     }
 }
 
+/// The state of each job, and how often it was claimed, in the order in which they were added.
+fn states(server: &Server) -> Vec<Vec<String>> {
+    server.rows("SELECT state, attempts FROM job ORDER BY id")
+}
+
 /// Lets all leases run out, as if their holders had been silent for long.
 pub(crate) fn run_out(server: &Server) {
     server

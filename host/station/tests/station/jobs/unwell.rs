@@ -5,7 +5,7 @@ use std::process::Command;
 
 use halfrow_station::store::{Claim, Plant, SharedBoard, Wanted};
 
-use super::{any, board, job, plan, settings, shared, worker};
+use super::{any, board, job, plan, settings, shared, states, worker};
 use crate::common::{Did, folder, program};
 use crate::plant::server::Server;
 
@@ -24,11 +24,6 @@ fn worked(server: &Server, folder: &Path) -> Did {
         Did::from(Command::new(program()).args(["work", "--once", "--settings"]).arg(path).output().unwrap());
     assert_eq!(did.code, Some(0), "{did:?}");
     did
-}
-
-/// The state of each job and how often it was claimed, in the order in which they were added.
-fn states(server: &Server) -> Vec<Vec<String>> {
-    server.rows("SELECT state, attempts FROM job ORDER BY id")
 }
 
 /// The cable is not the job's fault.

@@ -79,11 +79,7 @@ fn jobs_are_judged_by_whoever_is_free_and_each_once() {
 #[test]
 fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     let (server, mut plant) = shared(1);
-    let slow = halfrow_station::store::SharedBoard {
-        target: "mock,pace=real,speed=20000".to_owned(),
-        ..super::board(0, "mock")
-    };
-    plant.share(&slow, "engel").unwrap();
+    plant.share(&endless(0), "engel").unwrap();
     let (plan, any) = (plan(), any());
     plant.add_jobs(&job(&plan, &any), 1).unwrap();
     let (folder, mut command) = work(&server, "12");

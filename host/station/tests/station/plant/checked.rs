@@ -39,7 +39,7 @@ fn plant() -> Server {
 }
 
 /// The faults of the server's database `name`, as sentences.
-pub(super) fn faults(server: &Server, name: &str) -> Vec<String> {
+pub(crate) fn faults(server: &Server, name: &str) -> Vec<String> {
     let url = server.url().replace("/plant", &format!("/{name}"));
     let plant = Plant::connect(&PlantAddress::new(&url, None, None).unwrap()).unwrap();
     let mut read = 0;

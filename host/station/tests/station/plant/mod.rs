@@ -1,6 +1,6 @@
 //! The plant, on a real PostgreSQL server, and what stations send to it.
 
-mod checked;
+pub(crate) mod checked;
 pub(crate) mod clocks;
 mod cut;
 mod figures;

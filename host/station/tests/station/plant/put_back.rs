@@ -1,9 +1,9 @@
 //! A plant that has lost data, which its stations still have.
 
-use halfrow_station::check::check_plant;
 use halfrow_station::record::JobClaim;
-use halfrow_station::store::{Plant, Snapshot};
+use halfrow_station::store::Plant;
 
+use super::checked::faults;
 use super::cut::due;
 use super::refused::did;
 use super::sent::{forget, send};
@@ -104,9 +104,7 @@ fn a_job_that_was_judged_after_the_copy_of_its_plant_is_done_by_the_run_that_is_
     forget(&made);
     send(made, server.address());
     assert_eq!(server.rows(done), is_done);
-    let snapshot = Snapshot::of_plant(Plant::connect(&server.address()).unwrap()).unwrap();
-    let checked = check_plant(&snapshot, &mut |_| ()).unwrap();
-    assert!(checked.faults.is_empty(), "{:?}", checked.faults);
+    assert_eq!(faults(&server, "plant"), Vec::<String>::new());
 }
 
 /// Its connections end before it is another one, so that this is never the first reason.

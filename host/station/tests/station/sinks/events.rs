@@ -7,13 +7,12 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 use super::send;
-use crate::common::{listening, query, reason};
+use crate::common::{listening, now_ms, query, reason};
 use crate::history::made::{End, Made, Run};
 use crate::plant::link::certificates;
 
@@ -105,10 +104,6 @@ impl Drop for Broker {
             let _ = process.wait();
         }
     }
-}
-
-fn now_ms() -> i64 {
-    i64::try_from(SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis()).unwrap()
 }
 
 /// The folder of a station with a run and a waiver of now, and a run of two hours ago.

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 use std::thread;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 
 use halfrow_station::record::{JobClaim, RunCause};
 use halfrow_station::run;
@@ -12,6 +12,7 @@ use tempfile::TempDir;
 
 use super::Trial;
 use super::shelf::Session;
+use crate::common::now_ms;
 use crate::history::generated::Draw;
 use crate::history::made::{End, Made, Run};
 use crate::jobs::worker;
@@ -192,8 +193,4 @@ impl Client<'_> {
     fn with(&mut self, act: impl FnOnce(Made) -> Made) {
         self.made = self.made.take().map(act);
     }
-}
-
-fn now_ms() -> i64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis().try_into().unwrap()
 }
