@@ -82,7 +82,7 @@ fn judged(trial: &Trial, rows: &[Vec<String>]) -> BTreeMap<String, Vec<String>> 
 }
 
 /// The runs of a station that ended, each with its hash.
-pub(super) fn kept(folder: &TempDir) -> Vec<String> {
+fn kept(folder: &TempDir) -> Vec<String> {
     let text = "SELECT id || ' ' || record_sha256 FROM run WHERE state = 'final'";
     crate::common::query(&super::process::data(folder), text)
 }

@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 use halfrow_station::store::{Plant, PlantAddress, PlantLink};
 use tempfile::TempDir;
 
-use crate::common::{Over, engel, reason};
+use crate::common::{Over, engel, query, reason};
 use crate::history::generated::Draw;
 use crate::jobs::{any, board, job, plan, run_out};
 use crate::plant::server::Server;
@@ -248,6 +248,10 @@ fn whatever_happens_to_stations_every_job_is_judged_once() {
     for count in [&happened.kills, &happened.cuts, &happened.stalls] {
         assert!(count.load(Ordering::Relaxed) > 0, "{happened:?}");
     }
+    let has_passed = |folder: &TempDir| {
+        !query(&process::data(folder), "SELECT id FROM run WHERE verdict = 'PASS'").is_empty()
+    };
+    assert!(folders[SHORT.clients as usize..].iter().any(has_passed), "no program judged a job");
     // The control: what the other control leaves in order is found as well.
     let of_station = rusqlite::Connection::open(process::data(&folders[0]).join("station.db")).unwrap();
     let other_hash = "UPDATE run SET record_sha256 = hex(zeroblob(32))
