@@ -1,6 +1,7 @@
 //! The tables as they are at one moment, and as they come out when they are made anew from the records.
 
 use std::cell::RefCell;
+use std::fs;
 use std::path::PathBuf;
 
 use halfrow::result::sha256;
@@ -69,6 +70,18 @@ impl Snapshot {
         }
         migrations::refuse_unknown_version(&folder.database(), found)?;
         Ok(snapshot)
+    }
+
+    /// The tables of the station that is at work in `folder`. Its start made the database, so that a folder without one was moved
+    /// away since, or its disk was unmounted.
+    ///
+    /// # Errors
+    /// Like [`Self::take`].
+    pub(crate) fn at_work(folder: &Folder) -> Result<Self, StoreError> {
+        Self::take(folder).map_err(|error| match (error, fs::metadata(folder.database())) {
+            (StoreError::NoResults { .. }, Err(source)) => folder.refused(source),
+            (error, _) => error,
+        })
     }
 
     /// The tables of a plant, until [`Self::end`].

@@ -205,7 +205,7 @@ impl App {
         match &self.0.source {
             Source::Station(_) => {
                 let folder = Folder::new(&self.0.settings.data);
-                self.blocking(visit, move || Snapshot::take(&folder).and_then(|now| look(&now))).await
+                self.blocking(visit, move || Snapshot::at_work(&folder).and_then(|now| look(&now))).await
             }
             Source::Plant(pool) => {
                 let pool = pool.clone();

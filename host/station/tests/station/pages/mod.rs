@@ -4,6 +4,7 @@ mod access;
 mod browser;
 mod changes;
 mod fuzz;
+mod gone;
 pub(crate) mod http;
 mod lanes;
 mod languages;
