@@ -6,7 +6,7 @@ use std::time::Duration;
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
-use maud::html;
+use maud::{Markup, html};
 use serde_json::json;
 
 use super::history::show;
@@ -54,6 +54,11 @@ impl Trouble {
     /// The same as the answer to a login, on the page that takes the next badge: a scanner has no way back.
     pub(super) fn at_login(self) -> Self {
         Self { is_login: true, ..self }
+    }
+
+    /// What is wrong, for a page that has the rest of what was asked for.
+    pub(super) fn told(&self) -> Markup {
+        show::told(&self.told)
     }
 
     /// The visitor may not do this.

@@ -33,7 +33,8 @@ pub(super) async fn answered(app: App, visit: Visit, answer: ScanReply) -> Resul
 
 async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Response, Trouble> {
     let Lanes { live, hints, .. } = app.lanes(&visit)?;
-    let (now, today) = (live.now(), counted(&app, &visit).await?);
+    let (now, today) = (live.now(), counted(&app, &visit).await);
+    let changes = today.is_err() || app.settings().sink_names().next().is_some();
     let head = html! {
         link rel="stylesheet" href="/assets/operator.css";
         noscript { link rel="stylesheet" href="/assets/still.css"; }
@@ -51,7 +52,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Resp
             // What is typed stays when the lanes are loaded anew, because they are in a page of their own.
             noscript { iframe src="/still" title=(visit.say("nav.lanes")) {} }
             (floor(&visit, &now))
-            footer #today data-changes[app.settings().sink_names().next().is_some()] { (today) }
+            footer #today data-changes[changes] { (or_why(today)) }
             div #said .heard role="log" aria-live="assertive" {}
         }
     };
@@ -60,7 +61,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Resp
 
 /// The lanes alone, which are loaded anew without a script.
 pub(super) async fn still(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let (now, today) = (app.lanes(&visit)?.live.now(), counted(&app, &visit).await?);
+    let (now, today) = (app.lanes(&visit)?.live.now(), counted(&app, &visit).await);
     let head = html! {
         meta http-equiv="refresh" content=(ANEW);
         base target="_top";
@@ -70,7 +71,7 @@ pub(super) async fn still(State(app): State<App>, visit: Visit) -> Result<Respon
         section #station {
             h1.heard { (visit.say("nav.lanes")) }
             (floor(&visit, &now))
-            footer #today { (today) " · " (live_lamp(&visit)) }
+            footer #today { (or_why(today)) " · " (live_lamp(&visit)) }
         }
     };
     Ok(Page { here: Here::Lanes, title: visit.say("nav.lanes"), head, content }.framed(&visit))
@@ -157,6 +158,11 @@ fn by_hand(visit: &Visit, now: &Now, unscripted: Option<&str>) -> Markup {
 /// What was judged today, for everybody who may look.
 pub(super) async fn today(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
     Ok(Html(counted(&app, &visit).await?.into_string()).into_response())
+}
+
+/// What was judged today, or why that cannot be told: lanes are shown whatever the store says.
+fn or_why(today: Result<Markup, Trouble>) -> Markup {
+    today.unwrap_or_else(|trouble| trouble.told())
 }
 
 async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
