@@ -58,6 +58,13 @@ impl Snapshot {
         Ok(records)
     }
 
+    /// The attachments of this run that were removed because they were old, by their hashes.
+    pub(crate) fn pruned_of(&self, run: &str) -> Result<BTreeSet<String>, StoreError> {
+        let pruned =
+            self.rows("to tell what was removed", sql::PRUNED_OF_RUN, values![run], |row| row.get(0))?;
+        Ok(pruned.into_iter().collect())
+    }
+
     /// The evidence that was removed because it was old.
     ///
     /// # Errors

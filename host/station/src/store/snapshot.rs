@@ -154,6 +154,11 @@ impl Snapshot {
         }
     }
 
+    /// Whether they are a plant's.
+    pub(crate) const fn is_plant(&self) -> bool {
+        matches!(self.of, Of::Plant(_))
+    }
+
     /// Whether there is a piece of evidence of this hash here.
     #[must_use]
     pub(crate) fn has_evidence(&self, hash: &str) -> bool {

@@ -96,6 +96,7 @@ statements! {
     pub(super) ADD_AUDIT = "add-audit.sql";
     pub(super) WAIVER_OF = "waiver-of.sql";
     pub(super) PRUNED = "pruned.sql";
+    pub(super) PRUNED_OF_RUN = "pruned-of-run.sql";
     pub(super) OLD_EVIDENCE = "old-evidence.sql";
     pub(super) NAMED_EVIDENCE = "named-evidence.sql";
     pub(super) ATTACHMENTS = "attachments.sql";

@@ -1,5 +1,7 @@
 //! Evidence and exports of a run. Nothing that a board or a scanner said is ever served as a page.
 
+use std::collections::BTreeSet;
+
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
@@ -16,6 +18,47 @@ use crate::web::visit::Visit;
 
 /// Text of any kind is shown as text.
 const TEXT: &str = "text/plain; charset=utf-8";
+
+/// Where a piece of evidence is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Whereabouts {
+    Here,
+    /// At the station that judged: a plant has none.
+    AtStation,
+    /// It was removed because it was old.
+    Removed,
+    /// Nobody knows.
+    Lost,
+}
+
+impl Whereabouts {
+    /// The attachments of the run of this id, each with where it is.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub(super) fn of(
+        now: &Snapshot,
+        run: &str,
+        attachments: Vec<Attachment>,
+    ) -> Result<Vec<(Attachment, Self)>, StoreError> {
+        let is_here = |one: &Attachment| now.has_evidence(&one.sha256);
+        let is_asked = !now.is_plant() && !attachments.iter().all(is_here);
+        let removed = if is_asked { now.pruned_of(run)? } else { BTreeSet::new() };
+        let place = |one: &Attachment| {
+            if now.is_plant() {
+                Self::AtStation
+            } else if is_here(one) {
+                Self::Here
+            } else if removed.contains(&one.sha256) {
+                Self::Removed
+            } else {
+                Self::Lost
+            }
+        };
+        let places: Vec<_> = attachments.iter().map(place).collect();
+        Ok(attachments.into_iter().zip(places).collect())
+    }
+}
 
 /// An attachment of a run by its hash.
 pub(super) async fn attachment(

@@ -12,7 +12,7 @@ use maud::{Markup, html};
 use serde::Deserialize as _;
 use serde_json::Value;
 
-use super::evidence::{attached, read};
+use super::evidence::{Whereabouts, attached, read};
 use super::show;
 use crate::history::runs::RunLine;
 use crate::history::unit::{self, UnitRun};
@@ -84,9 +84,9 @@ pub(super) fn of_run(
     visit: &Visit,
     run: &RunLine,
     record: Option<&Record>,
-    kept: &[(Attachment, bool)],
+    kept: &[(Attachment, Whereabouts)],
 ) -> Markup {
-    let here = || kept.iter().filter(|(_, is_here)| *is_here).map(|(one, _)| one);
+    let here = || kept.iter().filter(|(_, place)| *place == Whereabouts::Here).map(|(one, _)| one);
     let hash = |frame: &KeptFrame, view| {
         let name = frame.name(view);
         here().find(|one| one.name == name).map(|one| one.sha256.as_str())

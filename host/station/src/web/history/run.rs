@@ -12,6 +12,7 @@ use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::acts::{RefusedAct, Waive};
+use super::evidence::Whereabouts;
 use super::run_filter::unit_address;
 use super::{acts, pictures, show};
 use crate::export::Format;
@@ -25,11 +26,11 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// A run, its record or why that cannot be read, and its attachments, each with whether it is still there.
+/// A run, its record or why that cannot be read, and its attachments, each with where it is.
 struct Found {
     run: UnitRun,
     record: Option<Result<Box<Record>, Said>>,
-    kept: Vec<(Attachment, bool)>,
+    kept: Vec<(Attachment, Whereabouts)>,
 }
 
 pub(super) async fn page(
@@ -54,9 +55,7 @@ pub(super) async fn shown(
             Err(error) => Err(Said::of(&error)),
         };
         let record = run.line.record_sha256.as_ref().map(read);
-        let is_here = |one: Attachment| (now.has_evidence(&one.sha256), one);
-        let kept = std::mem::take(&mut run.attachments).into_iter().map(is_here);
-        let kept = kept.map(|(is_here, one)| (one, is_here)).collect();
+        let kept = Whereabouts::of(now, &id, std::mem::take(&mut run.attachments))?;
         Ok(Some(Found { run, record, kept }))
     };
     let found = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
@@ -358,8 +357,13 @@ fn size(visit: &Visit, bytes: u64) -> String {
 }
 
 /// Exports and evidence.
-fn files(visit: &Visit, run: &UnitRun, kept: &[(Attachment, bool)]) -> Markup {
+fn files(visit: &Visit, run: &UnitRun, kept: &[(Attachment, Whereabouts)]) -> Markup {
     let address = show::run_address(&run.line.id);
+    let elsewhere = |place| match place {
+        Whereabouts::AtStation => visit.words.fill("run.at_station", &[("station", &run.line.station)]),
+        Whereabouts::Removed => visit.say("run.removed").to_owned(),
+        Whereabouts::Here | Whereabouts::Lost => visit.say("run.absent").to_owned(),
+    };
     html! {
         @if run.line.record_sha256.is_some() {
             h2 { (visit.say("run.exports")) }
@@ -371,9 +375,9 @@ fn files(visit: &Visit, run: &UnitRun, kept: &[(Attachment, bool)]) -> Markup {
         }
         @if !kept.is_empty() {
             h2 { (visit.say("run.evidence")) }
-            ul.evidence { @for (one, is_here) in kept { li {
-                @if *is_here { a href=(format!("{address}/evidence/{}", one.sha256)) { (show::said(&one.name)) } }
-                @else { (show::said(&one.name)) " " span.soft { (visit.say("run.removed")) } }
+            ul.evidence { @for (one, place) in kept { li {
+                @if *place == Whereabouts::Here { a href=(format!("{address}/evidence/{}", one.sha256)) { (show::said(&one.name)) } }
+                @else { (show::said(&one.name)) " " span.soft { (show::said(&elsewhere(*place))) } }
                 " " span.soft { (size(visit, one.bytes)) " · SHA-256 " code { (one.sha256) } }
             } } }
         }

@@ -11,6 +11,7 @@ pub(crate) mod generated;
 pub(crate) mod in_time;
 mod kept;
 mod looked_at;
+mod lost;
 pub(crate) mod made;
 mod pages;
 mod pareto;

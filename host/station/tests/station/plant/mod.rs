@@ -16,6 +16,7 @@ mod refused;
 pub(crate) mod sent;
 pub(crate) mod server;
 mod silent;
+mod station_named;
 mod tables;
 mod tampered;
 mod texts;
