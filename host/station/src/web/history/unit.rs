@@ -128,6 +128,7 @@ fn story(visit: &Visit, run: &UnitRun) -> Markup {
                 a href=(show::run_address(&line.id)) { (show::moment(line.started_ms)) }
                 span.soft {
                     " · " (show::said(&line.plan)) " " (show::said(&line.version))
+                    @if visit.is_plant { " · " (visit.say("nav.station")) " " (show::said(&line.station)) }
                     " · " (visit.say("history.lane")) " " (show::said(&line.lane)) " · " (show::said(&line.operator))
                     @if line.is_judgement() {
                         " · " (visit.words.fill("history.nth", &[("number", &line.nth.to_string())]))
