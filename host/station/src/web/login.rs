@@ -13,7 +13,7 @@ use super::access::{Claimant, Identified};
 use super::history::show;
 use super::language::{self, Sentence};
 use super::layout::{Here, Page};
-use super::routes::{Route, Who, act, is_page, look};
+use super::routes::{Route, Who, act, look, page_of};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
@@ -147,15 +147,12 @@ async fn choose(
     let secure = if app.access().address().is_https() { "; Secure" } else { "" };
     let name = language::COOKIE;
     let cookie = format!("{name}={code}; Path=/; Max-Age={YEAR}; HttpOnly; SameSite=Lax{secure}");
-    let back = back(&app, &headers).unwrap_or("/");
-    Ok(([(header::SET_COOKIE, cookie)], Redirect::to(back)).into_response())
+    let back = from(&headers).map_or_else(|| "/".to_owned(), |from| page_of(&app, from));
+    Ok(([(header::SET_COOKIE, cookie)], Redirect::to(&back)).into_response())
 }
 
-/// The page that a form was on, with its query.
-fn back<'a>(app: &App, headers: &'a HeaderMap) -> Option<&'a str> {
+/// The address of what a form was on, with its query. That of the answer to an act is the act's.
+fn from(headers: &HeaderMap) -> Option<&str> {
     let (_, page) = headers.get(header::REFERER)?.to_str().ok()?.split_once("://")?;
-    let asked = page.get(page.find('/')?..)?;
-    let path = asked.split(['?', '#']).next()?;
-    // The answer to an act has an address at which there is no page.
-    is_page(app, path).then_some(asked)
+    page.get(page.find('/')?..)
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use axum::body::{self, Body, Bytes};
 use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderName};
+use axum::http::uri::PathAndQuery;
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Redirect, Response};
@@ -13,7 +14,7 @@ use tokio::time;
 
 use super::access::Machine;
 use super::login::Peer;
-use super::routes::Who;
+use super::routes::{Who, page_of};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::{User, Visit, cookie};
@@ -84,7 +85,7 @@ pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next
     let Guarded { app, who, is_act } = guarded;
     // A browser asks for it whose address bar still has an act's address.
     if is_act && [Method::GET, Method::HEAD].contains(request.method()) {
-        return Redirect::to("/").into_response();
+        return Redirect::to(&page_of(&app, asked(&request))).into_response();
     }
     let visit = match bearer(request.headers()).filter(|_| !app.access().asks_nobody()) {
         None => app.visit(request.headers(), is_act).await.map_err(troubled),
@@ -112,6 +113,11 @@ pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next
             response
         }
     }
+}
+
+/// The address that is asked for, with its query.
+fn asked(request: &Request) -> &str {
+    request.uri().path_and_query().map_or("/", PathAndQuery::as_str)
 }
 
 /// The cookie that a visitor without one is given.

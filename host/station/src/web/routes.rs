@@ -89,13 +89,25 @@ fn table(app: &App) -> Vec<Route> {
 }
 
 /// Whether there is a page at this path.
-pub(super) fn is_page(app: &App, path: &str) -> bool {
+fn is_page(app: &App, path: &str) -> bool {
     let is_at = |route: &Route| {
         let (known, asked) = (route.path.split('/'), path.split('/'));
         known.clone().count() == asked.clone().count()
             && known.zip(asked).all(|(known, asked)| known.starts_with('{') || known == asked)
     };
     table(app).iter().any(|route| route.method == Method::GET && is_at(route))
+}
+
+/// The page at this address, or else the nearest one above it, which is where the form of an act is; with the query.
+pub(super) fn page_of(app: &App, asked: &str) -> String {
+    let (mut path, query) = asked.split_once('?').map_or((asked, None), |(path, query)| (path, Some(query)));
+    while !is_page(app, path) {
+        match path.rsplit_once('/') {
+            Some((above, _)) if !above.is_empty() => path = above,
+            _ => return "/".to_owned(),
+        }
+    }
+    query.map_or_else(|| path.to_owned(), |query| format!("{path}?{query}"))
 }
 
 /// The table as a service. What all routes have in common goes around the whole, what depends on a line goes around its route.

@@ -141,7 +141,8 @@ pub(super) fn rebind_form(visit: &Visit, unit: &Unit, refused: Option<&RefusedAc
     let (device, reason) = typed.map_or(("", ""), |typed| (&typed.device, &typed.reason));
     html! {
         @if visit.may(Who::Engineer) {
-            form.change method="post" action="/unit/rebind" autocomplete="off" {
+            // The address alone leads back to the unit.
+            form.change method="post" action=(RunFilter::of_serial(&unit.serial).address("/unit/rebind", None)) autocomplete="off" {
                 h2 { (visit.say("rebind.title")) }
                 p.soft { (visit.say("rebind.about")) }
                 input type="hidden" name="serial" value=(unit.serial);

@@ -136,12 +136,29 @@ fn an_engineer_waives_a_fail_once_and_with_a_reason_and_everyone_sees_it() {
     assert_eq!(engineer.post("/runs/1/waive", &[("reason", "x")]).send().status, 404);
 }
 
+/// A form that was refused is shown again at the address of its act.
+#[test]
+fn a_language_that_is_chosen_below_a_refused_form_leads_to_the_page_of_the_form() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let here = serving.here();
+    for (from, to) in [
+        ("/runs/1/waive", "/runs/1"),
+        ("/unit/rebind?serial=S%201", "/unit?serial=S%201"),
+        ("/outbox/1/release", "/outbox"),
+    ] {
+        let page = format!("http://127.0.0.1:{}{from}", serving.port);
+        let answer = here.post("/language", &[("language", "de")]).with("referer", &page).send();
+        assert_eq!((answer.status, answer.header("location")), (303, Some(to)), "{from}");
+    }
+}
+
 #[test]
 fn an_engineer_binds_a_unit_to_another_device_with_a_reason() {
     let (station, serving, _) = failed();
     let (operator, engineer) = (serving.operator(), serving.engineer());
     let unit = format!("/unit?serial={}", SERIALS[0]);
-    let form = "action=\"/unit/rebind\"";
+    let form = &format!("action=\"/unit/rebind?serial={}\"", SERIALS[0]);
     assert!(!page(&operator, &unit).contains(form) && page(&engineer, &unit).contains(form));
     let holds = "SELECT device FROM binding WHERE to_ms IS NULL";
     assert_eq!(station.query(holds), ["0000000000000001"]);

@@ -141,7 +141,7 @@ fn a_login_that_was_made_for_another_cookie_is_answered_with_a_form_that_logs_in
 
 /// A page that an act has answered is asked for again by its address, as by Enter in the address bar.
 #[test]
-fn whoever_looks_where_acts_are_sent_is_led_to_the_first_page() {
+fn whoever_looks_where_acts_are_sent_is_led_to_the_page_with_their_form() {
     let station = Station::public(1);
     let serving = station.serve();
     let operator = serving.operator();
@@ -150,7 +150,13 @@ fn whoever_looks_where_acts_are_sent_is_led_to_the_first_page() {
         for method in ["GET", "HEAD"] {
             let answer = Request { method: method.to_owned(), ..operator.get(row.3) }.send();
             let led = (answer.status, answer.header("location"));
-            assert_eq!(led, (303, Some("/")), "{method} {}", row.3);
+            let page = match row.3 {
+                "/runs/1/waive" => "/runs/1",
+                "/outbox/1/release" => "/outbox",
+                "/unit/rebind" => "/unit",
+                _ => "/",
+            };
+            assert_eq!(led, (303, Some(page)), "{method} {}", row.3);
         }
         let put = Request { method: "PUT".to_owned(), ..operator.get(row.3) };
         assert_eq!(status(&put), 403, "PUT {}", row.3);
