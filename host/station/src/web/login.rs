@@ -35,22 +35,23 @@ pub(super) fn routes() -> Vec<Route> {
 }
 
 async fn page(visit: Visit) -> Response {
-    asked(&visit, None).answer(&visit)
+    asked(&visit, None, "").answer(&visit)
 }
 
-/// The page that asks for a badge, below why the last one was refused.
-pub(super) fn asked(visit: &Visit, refused: Option<&Sentence>) -> Page<'static> {
+/// The page that asks for a badge, below why the last one or an act was refused; a login leads to the address `page`.
+pub(super) fn asked(visit: &Visit, refused: Option<&Sentence>, page: &str) -> Page<'static> {
     let title = visit.say("login.title");
-    Page { here: Here::Elsewhere, title, head: html! {}, content: form(visit, refused) }
+    Page { here: Here::Elsewhere, title, head: html! {}, content: form(visit, refused, page) }
 }
 
-fn form(visit: &Visit, refused: Option<&Sentence>) -> Markup {
+fn form(visit: &Visit, refused: Option<&Sentence>, page: &str) -> Markup {
     html! {
         section.login {
             h1 { (visit.say("login.title")) }
             @if let Some(refused) = refused { p.refused role="alert" { (show::told(refused)) } }
             form method="post" action="/login" autocomplete="off" {
                 input type="hidden" name="csrf" value=(visit.csrf);
+                @if !page.is_empty() { input type="hidden" name="page" value=(page); }
                 label { (visit.say("login.badge")) input type="password" name="badge" required autofocus maxlength="200"; }
                 label { (visit.say("login.password")) input type="password" name="password" maxlength="200"; }
                 p { (visit.say("login.who")) }
@@ -65,20 +66,25 @@ struct Login {
     badge: String,
     #[serde(default)]
     password: String,
+    /// The address that the login leads to.
+    #[serde(default)]
+    page: String,
 }
 
 async fn log_in(
     State(app): State<App>,
     Extension(Peer(peer)): Extension<Peer>,
     visit: Visit,
-    Form(Login { badge, password }): Form<Login>,
+    Form(Login { badge, password, page }): Form<Login>,
 ) -> Result<Response, Trouble> {
     let badge = app.settings().scanner.label(&badge).map(str::to_owned).unwrap_or(badge);
     let refused = || Trouble::new(&visit, StatusCode::FORBIDDEN, visit.say("login.refused"));
     let known = identified(&app, &visit, Claimant::Stranger(peer), (badge, password)).await;
-    let known = known.and_then(|known| known.ok_or_else(refused)).map_err(Trouble::at_login)?;
+    let known = known
+        .and_then(|known| known.ok_or_else(refused))
+        .map_err(|trouble| trouble.at_login(page.clone()))?;
     let cookie = logged_in(&app, &visit, known).await?;
-    Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
+    Ok(([(header::SET_COOKIE, cookie)], Redirect::to(&page_of(&app, &page))).into_response())
 }
 
 /// Who has this badge and this password, if anybody. Whoever guesses has to wait after some failures.

@@ -202,7 +202,10 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
         return Err(refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.origin")));
     }
     if !visit.may(who) {
-        return Err(Box::new(Trouble::barred(visit).into_response()));
+        let barred = Trouble::barred(visit);
+        let is_over = visit.user.is_none() && visit.untold.is_none() && visit.can_log_in;
+        let page = page_of(app, asked(&request));
+        return Err(if is_over { with_form(app, visit, barred, page) } else { troubled(barred) });
     }
     if app.is_ending() {
         return Err(refused(visit, StatusCode::SERVICE_UNAVAILABLE, visit.say("trouble.ending")));
@@ -224,8 +227,13 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
 
 /// The answer to a login with a form that was made for another cookie: a form for the cookie that the visitor has, or is given.
 fn login_anew(app: &App, visit: &Visit) -> RefusedRequest {
-    let stale = Trouble::new(visit, StatusCode::FORBIDDEN, visit.say("login.stale")).at_login();
-    let mut response = stale.into_response();
+    let stale = Trouble::new(visit, StatusCode::FORBIDDEN, visit.say("login.stale"));
+    with_form(app, visit, stale, String::new())
+}
+
+/// A refusal with a form that logs in for the cookie that the visitor has, or is given, and leads to `page`.
+fn with_form(app: &App, visit: &Visit, refused: Trouble, page: String) -> RefusedRequest {
+    let mut response = refused.at_login(page).into_response();
     if let Some(cookie) = new_cookie(app, visit) {
         response.headers_mut().insert(header::SET_COOKIE, cookie);
     }

@@ -107,7 +107,9 @@ pub(super) fn page_of(app: &App, asked: &str) -> String {
             _ => return "/".to_owned(),
         }
     }
-    query.map_or_else(|| path.to_owned(), |query| format!("{path}?{query}"))
+    let page = query.map_or_else(|| path.to_owned(), |query| format!("{path}?{query}"));
+    // A form can send what no header holds.
+    if page.bytes().all(|byte| byte.is_ascii_graphic()) { page } else { "/".to_owned() }
 }
 
 /// The table as a service. What all routes have in common goes around the whole, what depends on a line goes around its route.

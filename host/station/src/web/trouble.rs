@@ -27,8 +27,8 @@ pub(super) struct Trouble {
     told: Sentence,
     /// Whether the page that asked has to be loaded anew first.
     is_stale: bool,
-    /// Whether a login was refused.
-    is_login: bool,
+    /// Where a login leads, if the answer is the form that takes a badge.
+    login: Option<String>,
 }
 
 impl Trouble {
@@ -48,12 +48,12 @@ impl Trouble {
     }
 
     fn saying(visit: &Visit, status: StatusCode, told: Sentence) -> Self {
-        Self { status, visit: Box::new(visit.clone()), told, is_stale: false, is_login: false }
+        Self { status, visit: Box::new(visit.clone()), told, is_stale: false, login: None }
     }
 
-    /// The same as the answer to a login, on the page that takes the next badge: a scanner has no way back.
-    pub(super) fn at_login(self) -> Self {
-        Self { is_login: true, ..self }
+    /// The same on the page that takes a badge, from which a login leads to `page`: a scanner has no way back.
+    pub(super) fn at_login(self, page: String) -> Self {
+        Self { login: Some(page), ..self }
     }
 
     /// What is wrong, for a page that has the rest of what was asked for.
@@ -113,13 +113,13 @@ impl Trouble {
 
 impl IntoResponse for Trouble {
     fn into_response(self) -> Response {
-        let Self { status, visit, told, is_stale, is_login } = self;
+        let Self { status, visit, told, is_stale, login } = self;
         if visit.is_script {
             let text = json!({ "is_taken": false, "said": told.text, "is_stale": is_stale }).to_string();
             return (status, [(CONTENT_TYPE, "application/json")], text).into_response();
         }
-        if is_login {
-            return login::asked(&visit, Some(&told)).with_status(&visit, status);
+        if let Some(page) = login {
+            return login::asked(&visit, Some(&told), &page).with_status(&visit, status);
         }
         let content =
             html! { section.trouble { h1 { (status.as_u16()) } p role="alert" { (show::told(&told)) } } };

@@ -1,6 +1,6 @@
 //! What an engineer changes on a page: a waiver, and another device for a serial number.
 
-use crate::pages::station::{Browser, SERIALS, Serving, Station};
+use crate::pages::station::{Browser, PUBLIC, SERIALS, Serving, Station};
 
 /// A station with user accounts and a board that fails, and the run that failed.
 fn failed() -> (Station, Serving, String) {
@@ -150,6 +150,31 @@ fn a_language_that_is_chosen_below_a_refused_form_leads_to_the_page_of_the_form(
         let page = format!("http://127.0.0.1:{}{from}", serving.port);
         let answer = here.post("/language", &[("language", "de")]).with("referer", &page).send();
         assert_eq!((answer.status, answer.header("location")), (303, Some(to)), "{from}");
+    }
+}
+
+/// The form was open for longer than the session.
+#[test]
+fn whoever_sends_a_form_after_the_session_logs_in_there_and_is_led_back() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let mut browser = serving.browser(PUBLIC);
+    let over = browser.post("/runs/1/waive", &[("reason", "used as it is")]).send();
+    let told = over.text();
+    assert!(over.status == 401 && told.contains("Log in first") && told.contains("name=\"badge\""), "{told}");
+    browser.learn(&over);
+    let login = |page, badge| browser.post("/login", &[("page", page), ("badge", badge)]).send();
+    let (_, page) = told.split_once("name=\"page\" value=\"").unwrap();
+    let (page, _) = page.split_once('"').unwrap();
+    assert!(login(page, "A-1").text().contains("name=\"page\" value=\"/runs/1\""), "a wrong badge");
+    for (page, to) in [
+        (page, "/runs/1"),
+        ("//evil.example/history", "/"),
+        ("https://evil.example", "/"),
+        ("/unit?\r\nx", "/"),
+    ] {
+        let answer = login(page, "A-0017");
+        assert_eq!((answer.status, answer.header("location")), (303, Some(to)), "{page}");
     }
 }
 
