@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use serde::Deserialize;
 
 use super::fields::Fields;
-use super::history::show;
+use super::history::{show, unit_address};
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, look};
 use super::state::App;
@@ -101,7 +101,7 @@ fn row(visit: &Visit, job: &Job) -> Markup {
             td.when title=(job.id) { (show::titled_moment(job.created_ms)) }
             td {
                 @if job.serial.is_empty() { (visit.say("jobs.any")) " " (show::said(&job.kind)) }
-                @else { (show::said(&job.serial)) }
+                @else { (unit(&job.serial)) }
                 @if !job.needs.is_empty() { div.soft { (show::said(&job.needs)) } }
             }
             td { (show::said(&job.plan)) " " (show::said(&job.version)) }
@@ -119,6 +119,11 @@ fn row(visit: &Visit, job: &Job) -> Markup {
     }
 }
 
+/// A serial number, which leads to the runs of its unit: a job that came to nothing has no run of its own to lead to.
+fn unit(serial: &str) -> Markup {
+    html! { a href=(unit_address(serial)) { (show::said(serial)) } }
+}
+
 fn shelf(visit: &Visit, boards: &[SharedBoard]) -> Markup {
     html! {
         div.wide tabindex="0" { table.runs {
@@ -130,7 +135,7 @@ fn shelf(visit: &Visit, boards: &[SharedBoard]) -> Markup {
                 tr {
                     td.name { b { (show::said(&board.name)) } }
                     td { (show::said(&board.kind)) } td { (show::said(&board.target)) }
-                    td { (show::said(&board.serial)) } td { (show::said(&board.station)) }
+                    td { (unit(&board.serial)) } td { (show::said(&board.station)) }
                     td { (state(visit, board)) }
                 }
             } }

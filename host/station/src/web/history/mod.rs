@@ -19,6 +19,8 @@ pub(super) mod show;
 mod unit;
 mod yields;
 
+pub(super) use run_filter::unit_address;
+
 use super::routes::{Route, Who, act, look};
 
 pub(super) fn routes() -> Vec<Route> {

@@ -142,7 +142,7 @@ impl RunFilter {
 }
 
 /// The address of the page of a serial number.
-pub(super) fn unit_address(serial: &str) -> String {
+pub(in crate::web) fn unit_address(serial: &str) -> String {
     RunFilter::of_serial(serial).address("/unit", None)
 }
 

@@ -201,9 +201,16 @@ fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
     plant.take_out("shelf-2", engel(&reason("it smells"))).unwrap();
     plant.wait(&Waiter::new("ulx3s", "weber", "13").unwrap()).unwrap();
     let page = text(&browser, "/jobs");
-    for expected in
-        ["CAT00007", "quick 1", "any ulx3s", "shelf-1", "north 1", "it smells", "&lt;rare&gt;", "13 weber"]
-    {
+    for expected in [
+        "<a href=\"/unit?serial=CAT00007\">CAT00007</a>",
+        "quick 1",
+        "any ulx3s",
+        "shelf-1",
+        "north 1",
+        "it smells",
+        "&lt;rare&gt;",
+        "13 weber",
+    ] {
         assert!(page.contains(expected), "{expected}: {page}");
     }
     assert_eq!(page.matches("any ulx3s").count(), 99, "a hundred are on a page");
