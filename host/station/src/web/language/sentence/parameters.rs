@@ -45,6 +45,7 @@ impl Words {
             "verdict" => self.verdict(value?).or_else(own),
             "when" => moment(value?).or_else(own),
             "board.no_hardware" => Some(self.no_hardware(parameters).to_owned()),
+            "doing" => self.refused_by_plant(value?).or_else(own),
             "table" => self.table(value?).or_else(own),
             _ => own(),
         }
@@ -86,6 +87,17 @@ impl Words {
             Some("replay") => self.say("told.of-recording"),
             _ => "",
         }
+    }
+
+    /// What a plant refuses. What only persons at a command ask for stays English.
+    fn refused_by_plant(&self, doing: &Value) -> Option<String> {
+        let words = match doing.as_str()? {
+            "a connection" => self.say("told.a-connection"),
+            "a run" => self.say("told.a-run"),
+            look if look.starts_with("to tell ") || look.starts_with("to be read") => self.say("told.a-look"),
+            _ => return None,
+        };
+        Some(words.to_owned())
     }
 
     /// The memory of a table.
