@@ -96,7 +96,7 @@ fn run_lines(run: &UnitRun, not_exercised: &[String]) -> Vec<String> {
     lines.extend(not_exercised.iter().map(|parts| format!("  untested  {parts}")));
     lines.extend(run.suspects.iter().map(|suspect| {
         let share = suspect.share().map(|share| format!(": explains {share:.0} %")).unwrap_or_default();
-        format!("  suspect   {}, {}{share}", suspect.part, suspect.place)
+        format!("  suspect   {}{share}", suspect.named())
     }));
     lines.extend(line.record_sha256.iter().map(|hash| format!("  record    {hash}")));
     lines.extend(evidence);

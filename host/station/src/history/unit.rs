@@ -102,6 +102,13 @@ pub struct Suspect {
 }
 
 impl Suspect {
+    /// The part and its place, which names the part where that says more.
+    #[must_use]
+    pub fn named(&self) -> String {
+        let Self { part, place, .. } = self;
+        if place.contains(part) { place.clone() } else { format!("{part}, {place}") }
+    }
+
     /// The share of what is wrong that it explains, in per cent; none if nothing was counted.
     #[must_use]
     pub fn share(&self) -> Option<f64> {
@@ -226,4 +233,20 @@ fn attachment(row: &Found<'_>) -> Result<Attachment, DatabaseError> {
 
 fn waiver(row: &Found<'_>) -> Result<Waiver, DatabaseError> {
     Ok(Waiver { run: row.get(0)?, at_ms: row.get(1)?, operator: row.get(2)?, reason: row.get(3)? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_named_once() {
+        for (part, place, named) in [
+            ("data bit", "line memory, data bit 7 stuck at 1", "line memory, data bit 7 stuck at 1"),
+            ("memory", "bit 3", "memory, bit 3"),
+        ] {
+            let suspect = Suspect { part: part.to_owned(), place: place.to_owned(), explained: 1.0 };
+            assert_eq!(suspect.named(), named);
+        }
+    }
 }

@@ -136,8 +136,7 @@ pub(super) fn suspect(visit: &Visit, suspect: &history::Suspect, defect: Option<
     }
     let words = fill(&[]);
     let (before, after) = words.split_once("{what}").unwrap_or_default();
-    let what = format!("{}, {}", suspect.part, suspect.place);
-    html! { p.suspect { (before) (show::english(visit, &what)) (after) } }
+    html! { p.suspect { (before) (show::english(visit, &suspect.named())) (after) } }
 }
 
 /// A waiver in one sentence.
@@ -168,7 +167,7 @@ fn suspects(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
 }
 
 /// The suspects of the last step that has some, with their codes.
-fn defects(record: &Record) -> Vec<Said> {
+pub(super) fn defects(record: &Record) -> Vec<Said> {
     let of_step = |step: &StepRecord| {
         let all = step.evidence.as_ref()?.get("suspects")?.as_array()?;
         let defect = |suspect: &Value| {

@@ -1,5 +1,7 @@
 //! All that is known of a serial number.
 
+use std::collections::BTreeMap;
+
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
@@ -11,11 +13,16 @@ use super::acts::{Rebind, RefusedAct};
 use super::run_filter::RunFilter;
 use super::{acts, mismatch, show};
 use crate::history::unit::{self, Binding, Unit, UnitRun};
+use crate::said::Said;
+use crate::store::Snapshot;
 use crate::web::fields::Fields;
 use crate::web::layout::{Here, Page};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
+
+/// The suspects of runs, by the run's id.
+type Defects = BTreeMap<String, Vec<Said>>;
 
 /// The most runs that are shown; a unit that checks shifts has thousands.
 const MOST_RUNS: usize = 200;
@@ -39,7 +46,13 @@ pub(super) async fn shown(
         return Err(Trouble::missing(&visit));
     }
     let serial = asked.serial.clone();
-    let units = app.look(&visit, move |now| unit::units(now, &serial)).await?;
+    let is_english = visit.words.code == "en";
+    let look = move |now: &Snapshot| {
+        let units = unit::units(now, &serial)?;
+        let told = if is_english { Defects::new() } else { told(now, &units) };
+        Ok((units, told))
+    };
+    let (units, told) = app.look(&visit, look).await?;
     if units.is_empty() {
         let said = visit.words.fill("history.unknown", &[("serial", &plain(&asked.serial))]);
         return Err(Trouble::new(&visit, StatusCode::NOT_FOUND, said));
@@ -47,13 +60,28 @@ pub(super) async fn shown(
     let status = refused.as_ref().map_or(StatusCode::OK, |refused| refused.status);
     let content = html! {
         @if let Some(refused) = &refused { (refused.markup()) }
-        @for unit in &units { (of(&visit, &asked, unit, refused.as_ref())) }
+        @for unit in &units { (of(&visit, &asked, (unit, &told), refused.as_ref())) }
     };
     let page = Page { here: Here::History, title: &asked.serial, head: show::head(), content };
     Ok(page.with_status(&visit, status))
 }
 
-fn of(visit: &Visit, asked: &RunFilter, unit: &Unit, refused: Option<&RefusedAct<Rebind>>) -> Markup {
+/// The suspects of each run that has some, with their codes: the tables have them in English alone.
+fn told(now: &Snapshot, units: &[Unit]) -> Defects {
+    let shown = units.iter().flat_map(|unit| unit.runs.iter().take(MOST_RUNS));
+    let of_run = |run: &UnitRun| {
+        let (record, _) = now.record(run.line.record_sha256.as_ref()?).ok()?;
+        Some((run.line.id.clone(), super::run::defects(&record)))
+    };
+    shown.filter(|run| !run.suspects.is_empty()).filter_map(of_run).collect()
+}
+
+fn of(
+    visit: &Visit,
+    asked: &RunFilter,
+    (unit, told): (&Unit, &Defects),
+    refused: Option<&RefusedAct<Rebind>>,
+) -> Markup {
     let more = unit.runs.len().saturating_sub(MOST_RUNS);
     html! {
         section.unit {
@@ -70,7 +98,7 @@ fn of(visit: &Visit, asked: &RunFilter, unit: &Unit, refused: Option<&RefusedAct
             (mismatch::table(visit, &unit.mismatches))
             (acts::rebind_form(visit, unit, refused))
             h2 { (visit.say("history.every")) }
-            ol.story { @for run in unit.runs.iter().take(MOST_RUNS) { (story(visit, run)) } }
+            ol.story { @for run in unit.runs.iter().take(MOST_RUNS) { (story(visit, run, told.get(&run.line.id).map_or(&[], Vec::as_slice))) } }
             @if more > 0 {
                 p.pages { a href=(asked.address("/history", None)) { (visit.words.fill("history.further", &[("more", &more.to_string())])) } }
             }
@@ -119,7 +147,7 @@ fn devices(visit: &Visit, bindings: &[Binding]) -> Markup {
 }
 
 /// A run in the story of its unit.
-fn story(visit: &Visit, run: &UnitRun) -> Markup {
+fn story(visit: &Visit, run: &UnitRun, defects: &[Said]) -> Markup {
     let line = &run.line;
     html! {
         li {
@@ -137,7 +165,7 @@ fn story(visit: &Visit, run: &UnitRun) -> Markup {
                 }
             }
             @if let Some(headline) = &line.headline { p { (show::english(visit, headline)) } }
-            @for suspect in &run.suspects { (super::run::suspect(visit, suspect, None)) }
+            @for (place, suspect) in run.suspects.iter().enumerate() { (super::run::suspect(visit, suspect, defects.get(place))) }
             @for waiver in &run.waivers { (super::run::waiver(visit, waiver)) }
         }
     }

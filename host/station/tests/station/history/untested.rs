@@ -66,6 +66,7 @@ fn no_share_is_told_of_a_suspect_of_which_none_was_counted() {
             [page_of(&served, &run, language), served.get_in("/unit?serial=CAT00001", language).text()]
         {
             assert!(page.contains(suspected) && !page.contains(" 0 %"), "{page}");
+            assert!(!page.contains(&format!("{suspected}<span lang=\"en\">")), "{page}");
         }
     }
 }
