@@ -37,11 +37,11 @@ pub fn evidence(defect: &Defect, account: &Account) -> String {
             )
         }
         Account::Signatures { wrong, explained } => {
-            let wrong = count(wrong, "wrong frame");
-            format!(
-                "with {defect}, the model reproduces the signatures of {} of the {wrong} examined",
-                grouped(explained)
-            )
+            let share = match (explained, wrong) {
+                (1, 1) => "the one wrong frame".to_owned(),
+                _ => format!("{} of the {}", grouped(explained), count(wrong, "wrong frame")),
+            };
+            format!("with {defect}, the model reproduces the signatures of {share} examined")
         }
         Account::Nothing => defect,
     }

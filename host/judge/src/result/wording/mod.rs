@@ -211,7 +211,22 @@ fn stuck(value: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::{Finding, Repetition};
+    use crate::result::{Account, Finding, Repetition, StaleFrames};
+
+    #[test]
+    fn one_frame_is_told_as_one_and_several_as_several() {
+        let told = |wrong| evidence(&Defect::RecordsLate {}, &Account::Signatures { wrong, explained: 1 });
+        assert!(told(1).ends_with("the signatures of the one wrong frame examined"), "{}", told(1));
+        assert!(told(3).ends_with("the signatures of 1 of the 3 wrong frames examined"), "{}", told(3));
+        let stale = |rows: &[usize], frames: &[u16]| {
+            let of = |&frame: &u16| StaleFrames { frame, committed: 2, made_with: Vec::new() };
+            let frames = frames.iter().map(of).collect();
+            evidence(&Defect::StaleTables { rows: rows.to_vec(), frames }, &Account::Nothing)
+        };
+        assert!(stale(&[3], &[5]).starts_with("row 3 of frame 5 made "), "{}", stale(&[3], &[5]));
+        let several = stale(&[0, 1], &[5, 7, 8, 9]);
+        assert!(several.starts_with("rows 0 and 1 of frames 5, 7 to 9 made "), "{several}");
+    }
 
     #[test]
     fn what_no_defect_explains_is_said_so_and_large_numbers_are_grouped() {

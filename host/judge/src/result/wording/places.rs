@@ -10,7 +10,7 @@ use crate::words::{count, grouped};
 const FEW_BITS: usize = 2;
 
 pub(super) fn stale(rows: &[usize], frames: &[StaleFrames]) -> Words {
-    let rows = if rows.is_empty() { String::new() } else { format!("row {} of ", list(rows)) };
+    let rows = if rows.is_empty() { String::new() } else { format!("{} of ", numbered("row", rows)) };
     let mut alike: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for StaleFrames { frame, committed, made_with } in frames {
         let manner: Vec<_> = made_with.iter().map(|made| made_with_words(*made, *committed)).collect();
@@ -18,7 +18,7 @@ pub(super) fn stale(rows: &[usize], frames: &[StaleFrames]) -> Words {
     }
     let clauses: Vec<_> = alike
         .iter()
-        .map(|(manner, numbers)| format!("{rows}frame {} made {manner}", list(numbers)))
+        .map(|(manner, numbers)| format!("{rows}{} made {manner}", numbered("frame", numbers)))
         .collect();
     Words {
         part: "stale tables",
