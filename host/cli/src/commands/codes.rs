@@ -6,7 +6,8 @@ use clap::Args;
 use halfrow_mock::{ConnectError, OptionError};
 use halfrow_pipe::{FaultError, TargetError as BoardTargetError, ValueError};
 use halfrow_program::codes::{self as program, parameters};
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::json;
 
 use super::load::LoadError;
 use super::{Context, Failure, print};
@@ -216,9 +217,17 @@ fn names(example: &Problem) -> Vec<&str> {
     example.parameters.keys().map(String::as_str).chain(further).collect()
 }
 
+/// A code, and what it is of.
+#[derive(Serialize)]
+pub(super) struct Entry {
+    pub(super) of: &'static str,
+    pub(super) code: String,
+    pub(super) parameters: Vec<String>,
+}
+
 /// Every code with the names of its parameters.
-pub(super) fn all() -> Vec<Value> {
-    let entry = |of: &str, code: &str, parameters: Vec<String>| json!({ "of": of, "code": code, "parameters": parameters });
+pub(super) fn all() -> Vec<Entry> {
+    let entry = |of, code: &str, parameters| Entry { of, code: code.to_owned(), parameters };
     let findings = examples::findings().into_iter().map(|finding| {
         let problem = finding.as_problem();
         entry("finding", &problem.code, names(&problem).into_iter().map(str::to_owned).collect())

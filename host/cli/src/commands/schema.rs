@@ -28,7 +28,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
         schema["properties"]["command"] = json!({ "const": command });
     }
-    schema["$defs"]["code"]["enum"] = codes::all().iter().map(|entry| entry["code"].clone()).collect();
+    schema["$defs"]["code"]["enum"] =
+        codes::all().into_iter().map(|entry| Value::String(entry.code)).collect();
     print_json(&schema)?;
     Ok(Exit::Pass)
 }

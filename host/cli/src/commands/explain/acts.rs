@@ -376,7 +376,7 @@ mod tests {
     #[test]
     fn a_message_of_an_error_asks_once() {
         let is_error = |of: &str| ["error", "station-error"].contains(&of);
-        for it in known().into_values().flatten().filter(|it| is_error(&it.of)) {
+        for it in known().into_values().flatten().filter(|it| is_error(it.of)) {
             let message = if it.sentence.is_empty() { &it.meaning } else { &it.sentence };
             // The rows of a matrix are in brackets, with semicolons of their own.
             let outside = message.split(['[', ']']).step_by(2);
@@ -390,7 +390,7 @@ mod tests {
     fn acts_stand_in_the_order_of_their_codes_and_no_message_has_its_own_beside_them() {
         assert!(ACTS.is_sorted_by(|one, other| one.0 < other.0));
         let is_error = |of: &str| ["error", "station-error"].contains(&of);
-        let errors: Vec<_> = known().into_values().flatten().filter(|it| is_error(&it.of)).collect();
+        let errors: Vec<_> = known().into_values().flatten().filter(|it| is_error(it.of)).collect();
         for (code, act) in ACTS {
             let it = errors.iter().find(|it| it.code == *code);
             let own = it.map_or_else(|| panic!("no error {code}"), |it| of_message(&it.sentence));

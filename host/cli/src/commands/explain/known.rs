@@ -7,10 +7,9 @@ use halfrow::result::{CheckName, examples};
 use halfrow::verdict::Verdict;
 use halfrow::words::sentence;
 use serde::Serialize;
-use serde_json::{Value, json};
 
 use super::{acts, lines, unexercised};
-use crate::commands::codes;
+use crate::commands::codes::{self, Entry};
 
 /// Each code with its meaning and its error's message, from the comments of the sources.
 pub(super) const MEANINGS: &[(&str, &str, &str)] = include!(concat!(env!("OUT_DIR"), "/meanings.rs"));
@@ -23,7 +22,7 @@ const CODES_OF_STATION: &[(&str, &[&str])] = include!(concat!(env!("OUT_DIR"), "
 pub(super) struct Explanation {
     pub(super) code: String,
     /// What kind of word it is: finding, defect, not-exercised, error, station-error, verdict, check, line or fault.
-    pub(super) of: String,
+    pub(super) of: &'static str,
     pub(super) meaning: String,
     /// An example sentence, or a message with the names of its parameters in capitals.
     pub(super) sentence: String,
@@ -39,14 +38,13 @@ pub(super) struct Explanation {
 
 /// Every code, and every other word of a report, with its explanations.
 pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
-    let of_station = CODES_OF_STATION
-        .iter()
-        .map(|(code, names)| json!({ "of": "station-error", "code": code, "parameters": names }));
-    let mut known: BTreeMap<_, _> = of_station
-        .chain(codes::all())
-        .map(|entry| of_entry(&entry))
-        .map(|it| (it.code.clone(), it))
-        .collect();
+    let of_station = CODES_OF_STATION.iter().map(|&(code, names)| Entry {
+        of: "station-error",
+        code: code.to_owned(),
+        parameters: names.iter().map(|&name| name.to_owned()).collect(),
+    });
+    let mut known: BTreeMap<_, _> =
+        of_station.chain(codes::all()).map(|entry| (entry.code.clone(), of_entry(entry))).collect();
     let mut add =
         |code: &str, change: &dyn Fn(&mut Explanation)| known.get_mut(code).into_iter().for_each(change);
     for &(code, meaning, message) in MEANINGS {
@@ -88,7 +86,7 @@ fn words() -> impl Iterator<Item = Explanation> {
     let meaning = |name: &str| MEANINGS.iter().find(|(known, ..)| *known == name).map_or("", |(_, it, _)| it);
     let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Error].map(|verdict| Explanation {
         code: verdict.to_string(),
-        of: "verdict".to_owned(),
+        of: "verdict",
         meaning: meaning(&verdict.to_string().to_lowercase()).to_owned(),
         verdict: Some(verdict),
         fault: fault(Some(verdict)),
@@ -98,7 +96,7 @@ fn words() -> impl Iterator<Item = Explanation> {
     });
     let checks = CheckName::ALL.map(|check| Explanation {
         code: check.to_string(),
-        of: "check".to_owned(),
+        of: "check",
         meaning: meaning(check.name()).to_owned(),
         fault: "depends on the result: the code of the finding beside it says whose it is",
         acts: vec!["Run `halfrow explain` with the code of that finding.".to_owned()],
@@ -107,7 +105,7 @@ fn words() -> impl Iterator<Item = Explanation> {
     });
     let faults = halfrow_mock::catalogue().map(|it| Explanation {
         code: it.name.to_owned(),
-        of: "fault".to_owned(),
+        of: "fault",
         meaning: sentence(&it.summary()).unwrap_or_default(),
         fault: "the mock board's, when it is asked for one: `--board mock,fault=NAME`",
         parameters: it.parameters.iter().map(|parameter| parameter.key.to_owned()).collect(),
@@ -134,20 +132,18 @@ const fn act(verdict: Verdict) -> &'static str {
 }
 
 /// What is known about a code from its kind alone.
-fn of_entry(entry: &Value) -> Explanation {
-    let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
-    let parameters = entry["parameters"].as_array().into_iter().flatten().filter_map(Value::as_str);
-    let (verdict, fault, place) = match entry["of"].as_str() {
-        Some("finding") => (None, fault(None), "`finding` of a result, and of each of its `checks`"),
-        Some("defect") => (
+fn of_entry(Entry { of, code, parameters }: Entry) -> Explanation {
+    let (verdict, fault, place) = match of {
+        "finding" => (None, fault(None), "`finding` of a result, and of each of its `checks`"),
+        "defect" => (
             Some(Verdict::Fail),
             fault(Some(Verdict::Fail)),
             "`suspects` of a result, and `suspect` of its finding",
         ),
-        Some("not-exercised") => {
+        "not-exercised" => {
             (Some(Verdict::Pass), "nobody's: the run did not test it", "`not_exercised` of a result")
         }
-        Some("station-error") => (
+        "station-error" => (
             None,
             "not the board's: the station's, its settings', its plant's or the command's",
             "what `halfrow-station` answers with `--json`, and what `check` finds",
@@ -158,15 +154,7 @@ fn of_entry(entry: &Value) -> Explanation {
             "`error` of a result and its `causes`; `finding`, where it ends a run",
         ),
     };
-    Explanation {
-        code: text("code"),
-        of: text("of"),
-        parameters: parameters.map(str::to_owned).collect(),
-        verdict,
-        fault,
-        place,
-        ..Explanation::default()
-    }
+    Explanation { code, of, parameters, verdict, fault, place, ..Explanation::default() }
 }
 
 /// Whose fault it is, according to the verdict.

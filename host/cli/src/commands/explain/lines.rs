@@ -154,7 +154,7 @@ const LINES: &[Line] = &[
 pub(super) fn all() -> impl Iterator<Item = Explanation> {
     LINES.iter().map(|it| Explanation {
         code: it.word.to_owned(),
-        of: "line".to_owned(),
+        of: "line",
         meaning: it.meaning.to_owned(),
         fault: it.fault,
         acts: [it.act].into_iter().filter(|act| !act.is_empty()).map(str::to_owned).collect(),
