@@ -1,12 +1,12 @@
 //! Signals that end a command: Ctrl-C, SIGTERM, and SIGHUP from a terminal or connection that is gone.
 //!
-//! A command with a board asks for them ([`stop`]): the first one is noted, so that the command can end in order, and a second
+//! A command with a board asks for them (`heed`): the first one is noted, so that the command can end in order, and a second
 //! ends the program at once, unless it is the first one again within half a second. Any other command ends at the first. However it ends,
 //! nothing half written stays, except for what there is of a recording.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, LazyLock, OnceLock, mpsc};
+use std::sync::{OnceLock, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -16,6 +16,7 @@ use signal_hook::iterator::Signals;
 use crate::console;
 use crate::exit::Exit;
 use halfrow::files::written_aside::{self, Abandoned};
+use halfrow::verdict::StoppedBy;
 use halfrow_program::signals::is_ignored;
 
 /// How long the last message may take.
@@ -25,7 +26,7 @@ const TOLD: Duration = Duration::from_millis(300);
 const AGAIN: Duration = Duration::from_millis(500);
 
 /// The exit code of the first signal; 0 before any.
-static FIRST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+static FIRST: AtomicUsize = AtomicUsize::new(0);
 /// When it came.
 static FIRST_AT: OnceLock<Instant> = OnceLock::new();
 /// Whether the command checks [`FIRST`].
@@ -61,12 +62,11 @@ pub fn watch() -> Result<(), Unheard> {
     Ok(())
 }
 
-/// Where the exit code of the first signal appears; 0 before any. The caller must check it: after this call the first signal no
-/// longer ends the program.
-#[must_use]
-pub fn stop() -> Arc<AtomicUsize> {
+/// Who stopped the program, as soon as a signal came. The caller must ask: after this call the first signal no longer ends the
+/// program.
+pub(crate) fn heed() -> impl Fn() -> Option<StoppedBy> + Copy + Send + Sync + 'static {
     IS_HEEDED.store(true, Ordering::SeqCst);
-    Arc::clone(&FIRST)
+    || Exit::stopped_by(FIRST.load(Ordering::Relaxed))
 }
 
 fn receive(exit: Exit) {

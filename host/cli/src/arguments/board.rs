@@ -1,6 +1,5 @@
 //! The options of the board and its link, which several commands share.
 
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
@@ -12,7 +11,6 @@ use halfrow_program::number::{any, number};
 use super::judging::time_limit;
 use crate::call_error::CallError;
 use crate::commands::Context;
-use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::pool::{self, POOL};
 use crate::settings::Settings;
@@ -209,9 +207,9 @@ impl BoardArguments {
 
     /// What ends the run early: a signal, the loss of a board of a pool, or the call's limit on this computer's clock.
     pub(crate) fn stop(&self, settings: &Settings) -> Result<Stop, Failure> {
-        let signal = signals::stop();
+        let stopped = signals::heed();
         let lost = || pool::is_lost().then_some(StoppedBy::Caller);
-        let stop = Stop::when(move || Exit::stopped_by(signal.load(Ordering::Relaxed)).or_else(lost));
+        let stop = Stop::when(move || stopped().or_else(lost));
         Ok(stop.wall_limit(self.timeout(settings)?))
     }
 

@@ -5,7 +5,6 @@ mod loader;
 mod record;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -72,12 +71,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     if let Some(warning) = warning(&arguments.file, record.as_ref()) {
         console::diagnose(&format_args!("warning: {warning}"));
     }
-    let signal = signals::stop();
-    let stopped = move || Exit::stopped_by(signal.load(Ordering::Relaxed));
-    let stop = Stop::when(stopped.clone());
+    let stopped = signals::heed();
     let call = Call::new(onto.loader_name, onto.other_loader, &arguments.file, &arguments.options);
     call.run(arguments.deadline, &context.child_output(), &stopped)?;
-    let report = board.map(|target| greeted(&target, arguments.deadline, &stop, &stopped)).transpose()?;
+    let report = board.map(|target| greeted(&target, arguments.deadline, stopped)).transpose()?;
     let compared = match (&report, &record) {
         (Some(report), Some(record)) => compare(report, record)?,
         _ => false,
@@ -169,9 +166,9 @@ fn warning(file: &Path, record: Option<&Record>) -> Option<String> {
 fn greeted(
     target: &Target,
     limit: Duration,
-    stop: &Stop,
-    stopped: &dyn Fn() -> Option<StoppedBy>,
+    stopped: impl Fn() -> Option<StoppedBy> + Copy + Send + Sync + 'static,
 ) -> Result<BoardReport, Failure> {
+    let stop = Stop::when(stopped);
     let deadline = Instant::now() + limit;
     let mut last = None;
     loop {

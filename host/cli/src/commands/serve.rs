@@ -1,7 +1,6 @@
 //! `halfrow serve`
 
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 use clap::Args;
 
@@ -28,8 +27,8 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     refuse_recording(&arguments.board)?;
     let mut board = Hosted::open(&arguments.board)?;
-    let signal = signals::stop();
-    let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;
+    let stopped = signals::heed();
+    let mut ended = |_: Traffic| stopped().is_some();
     let served = match &arguments.tcp {
         Some(place) => {
             let port = Port::listen(place).map_err(failed)?;
