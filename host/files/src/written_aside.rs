@@ -21,9 +21,9 @@ use tempfile::NamedTempFile;
 pub use claim::Claim;
 pub use error::{Unfinished, WriteAsideError};
 pub use folder::{AsideFolder, Misplaced};
-pub use place::{Place, check, check_folder, clear, clear_older};
+pub use place::{Place, check, check_folder};
 use rights::Rights;
-pub use under_way::{Abandoned, abandon_all};
+pub use under_way::{Abandoned, abandon_all, clear, clear_older};
 
 /// Bytes that are written at once: writes of whole multiples of it are handed on as they are.
 pub const BUFFER: usize = 1 << 17;

@@ -283,7 +283,7 @@ mod tests {
         let killed = aside(&target, "killed");
         let earlier = killed.move_away().unwrap();
         drop(killed);
-        under_way::clean(station.path());
+        let _ = under_way::clear(station.path());
         assert_eq!((text(&earlier), entries(station.path())), ("second".to_owned(), 1));
         fs::rename(earlier, &target).unwrap();
         let third = aside(&target, "third");

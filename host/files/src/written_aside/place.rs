@@ -5,7 +5,6 @@ use std::io;
 use std::os::unix::ffi::OsStrExt as _;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Component, Path, PathBuf};
-use std::time::Duration;
 
 use super::{WriteAsideError, folder_of, under_way};
 
@@ -63,19 +62,6 @@ pub fn check_folder(folder: &Path, may_be_made: bool) -> io::Result<()> {
 
 fn is_link(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink())
-}
-
-/// Clears `folder` of what killed runs left in it. Streams that are worth keeping get a name that is free; these names are
-/// returned.
-#[must_use]
-pub fn clear(folder: &Path) -> Vec<PathBuf> {
-    under_way::clean(folder)
-}
-
-/// Clears `folder`, to which other computers may write, of files that killed runs left in it and that were worth nothing until they
-/// were whole. Not every file system shows one computer the locks of another, so files stay that were written within `age`.
-pub fn clear_older(folder: &Path, age: Duration) {
-    under_way::clean_older(folder, age);
 }
 
 /// A place, however it is named: two paths that lead to the same file or folder, or would, are the same place.

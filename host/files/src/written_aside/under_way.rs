@@ -172,13 +172,14 @@ pub(super) fn shortened(name: &OsStr) -> &OsStr {
 
 /// Clears `folder` of what killed runs left in it. Streams that are worth keeping get a name that is free; these names are
 /// returned. What cannot be identified or removed stays.
-pub(super) fn clean(folder: &Path) -> Vec<PathBuf> {
-    ours(folder).filter_map(|entry| clear(&entry.path())).collect()
+#[must_use]
+pub fn clear(folder: &Path) -> Vec<PathBuf> {
+    ours(folder).filter_map(|entry| clear_one(&entry.path())).collect()
 }
 
-/// Removes files from `folder` that were worth nothing until they were whole, that nobody holds, and that were last written at least
-/// `age` ago.
-pub(super) fn clean_older(folder: &Path, age: Duration) {
+/// Clears `folder`, to which other computers may write, of files that killed runs left in it and that were worth nothing until they
+/// were whole. Not every file system shows one computer the locks of another, so files stay that were written within `age`.
+pub fn clear_older(folder: &Path, age: Duration) {
     let is_old = |entry: &DirEntry| {
         let about = entry.metadata().ok().filter(Metadata::is_file);
         let written = about.and_then(|about| about.modified().ok());
@@ -186,7 +187,7 @@ pub(super) fn clean_older(folder: &Path, age: Duration) {
     };
     let is_aside = |entry: &DirEntry| entry.file_name().as_bytes().ends_with(ASIDE.as_bytes());
     let left = ours(folder).filter(|entry| is_aside(entry) && is_old(entry));
-    left.for_each(|entry| drop(clear(&entry.path())));
+    left.for_each(|entry| drop(clear_one(&entry.path())));
 }
 
 /// What runs write in `folder`, or have left there.
@@ -194,7 +195,7 @@ fn ours(folder: &Path) -> impl Iterator<Item = DirEntry> {
     fs::read_dir(folder).into_iter().flatten().flatten().filter(is_one_of_ours)
 }
 
-fn clear(path: &Path) -> Option<PathBuf> {
+fn clear_one(path: &Path) -> Option<PathBuf> {
     let file = lock::open(path).ok()?;
     let (Tried::Ours, true) = (lock::try_lock(&file), lock::is_named(&file, path)) else { return None };
     let about = file.metadata().ok()?;
