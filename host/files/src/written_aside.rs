@@ -363,4 +363,18 @@ mod tests {
             let _ = fs::remove_dir_all(&place);
         }
     }
+
+    #[test]
+    fn what_is_kept_of_a_long_name_tells_which_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        for first in ["a", "b"] {
+            let mut aside = Aside::stream(&folder.path().join(first.repeat(240)), true).unwrap();
+            aside.write_all(b"half a stream").unwrap();
+            aside.flush().unwrap();
+            let _ = aside.keep_unfinished(io::ErrorKind::StorageFull.into());
+        }
+        let mut kept = names(folder.path());
+        kept.sort_unstable();
+        assert_eq!(kept, ["a", "b"].map(|first| first.repeat(200) + ".partial"));
+    }
 }

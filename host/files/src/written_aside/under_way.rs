@@ -104,10 +104,7 @@ pub(super) fn file(
 ) -> io::Result<(NamedTempFile, Noted)> {
     let suffix = kept_for.map_or_else(
         || OsString::from(ASIDE),
-        |name| {
-            let name = if name.len() > LONGEST { OsStr::new("recording") } else { name };
-            [OsStr::new("."), name, OsStr::new(PARTIAL)].into_iter().collect()
-        },
+        |name| [OsStr::new("."), shortened(name), OsStr::new(PARTIAL)].into_iter().collect(),
     );
     for _ in 0..TRIES {
         let (file, noted) = made(|| {
