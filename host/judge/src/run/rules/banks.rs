@@ -9,7 +9,7 @@ use super::rows::{FRAME, GENERATION, TRIES};
 use super::{Rules, answer, broken, miscounted, of_rows, other_row};
 use crate::board::{BoardError, NumberedFrame, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Rule};
-use crate::run::findings::{During, End};
+use crate::run::findings::End;
 
 /// Rows that wait because all banks are full. The first of them takes the first bank that becomes free.
 const WAITING: u32 = 2;
@@ -88,7 +88,7 @@ impl Rules<'_, '_> {
         let height = height.unwrap_or(1);
         self.configure(height as usize)?;
         let (first, width) = (self.run.board.acknowledged(), self.small.geometry.width() as u16);
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         let (came, retries) = (self.run.board.rows_came(), self.run.board.tally().retries);
         let (right, asked, unneeded, is_exact) = (Compared::default(), 0, 0, true);
         let mut kept = FilledBanks {
@@ -138,7 +138,7 @@ impl Rules<'_, '_> {
 
     /// Whether the board had everything that was sent to it, and itself says that it sent only the rows that came.
     fn says_it_sent_no_more(&mut self, kept: &FilledBanks) -> Result<bool, End> {
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         let sent = |status: &Status| Counter::RowsNumbered.in_status(status);
         let came = self.run.board.rows_came() - kept.came;
         let is_all = sent(&status) == sent(&kept.before).saturating_add(came);
@@ -157,7 +157,7 @@ impl Rules<'_, '_> {
                 let number = self.run.board.give(&place, frame.row(place.row.into()));
                 self.given.numbers.push(number);
             }
-            let status = self.run.board.status().during(CheckName::Rules)?;
+            let status = self.status()?;
             self.window_at_most(kept, 0)?;
             if status.next_row_in == all {
                 self.given.rows = WAITING;
@@ -173,7 +173,7 @@ impl Rules<'_, '_> {
         let number = self.run.board.give(&kept.place(row), &kept.black());
         kept.unneeded += 1;
         // An answer to the row would come before this one.
-        self.run.board.status().during(CheckName::Rules)?;
+        self.status()?;
         match self.run.board.refusal_of_row(number) {
             None => Ok(()),
             Some(refusal) => {
@@ -187,9 +187,9 @@ impl Rules<'_, '_> {
     /// counts fewer of them than were sent.
     fn damaged_frees_none(&mut self, kept: &FilledBanks) -> Result<(), End> {
         self.run.board.disregard_rows(WAITING);
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         let sent = self.run.board.acknowledge_damaged(kept.first + kept.banks);
-        let after = self.run.board.status().during(CheckName::Rules)?;
+        let after = self.status()?;
         self.run.board.disregard_rows(0);
         if after.next_row_out == kept.first {
             self.right += 1;
@@ -234,7 +234,7 @@ impl Rules<'_, '_> {
         let mut had_it = false;
         for _ in 0..TRIES {
             self.run.board.acknowledge_alone(kept.first + 1);
-            let status = self.run.board.status().during(CheckName::Rules)?;
+            let status = self.status()?;
             had_it = self.run.board.had_each_packet_once(&status);
             if is_one_acknowledged(kept, &status)? {
                 self.run.board.disregard_rows(0);
@@ -267,7 +267,7 @@ impl Rules<'_, '_> {
     /// The board must have counted all that.
     fn kept_counted(&mut self, kept: &FilledBanks) -> Result<(), End> {
         let is_calm = kept.is_exact && self.is_calm(kept.retries)?;
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         let FilledBanks { before, first, asked, unneeded, .. } = kept;
         let rows = self.run.board.acknowledged() - first;
         let more = |counter: Counter, by| (counter, counter.in_status(before).saturating_add(by));

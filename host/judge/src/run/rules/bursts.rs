@@ -332,7 +332,7 @@ impl Rules<'_, '_> {
         self.drop_rows()?;
         self.clear()?;
         self.right_burst(Rule::Repeated, BurstMode::Repeating)?;
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         self.not_counted(None, &status)
     }
 }

@@ -41,7 +41,7 @@ impl Rules<'_, '_> {
         self.configure(ROWS)?;
         let tables = self.small.made(0, ROWS, GENERATION).tables;
         let frame = self.small.frame(FRAME, &tables).frame;
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         self.give(0);
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
@@ -50,7 +50,7 @@ impl Rules<'_, '_> {
         for session in others(self.run.board.session()) {
             self.run.board.acknowledge_in_session(session, second.row_sequence + 1);
         }
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         equal(
             Some(Rule::Session),
             &status,
@@ -59,14 +59,14 @@ impl Rules<'_, '_> {
         let came =
             self.run.board.again(rows[0], Some(rows[1]), 1).map_err(|error| of_rows(Rule::Again, error))?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         let repeated = before.rows_repeated.saturating_add(came.repeats.into());
         at_least(Some(Rule::Again), &status, &[(Counter::RowsRepeated, repeated)])?;
         for _ in 0..UNNEEDED {
             self.run.board.give(&first, frame.row(0));
         }
         let unneeded = status.rows_unneeded.saturating_add(UNNEEDED);
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         if self.run.board.had_each_packet_once(&status) {
             at_least(Some(Rule::Again), &status, &[(Counter::RowsUnneeded, unneeded)])?;
         }
@@ -91,9 +91,9 @@ impl Rules<'_, '_> {
         act: impl FnOnce(&mut Self) -> Result<(), End>,
     ) -> Result<(), End> {
         self.right_frames(&[FRAME])?;
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         act(self)?;
-        let after = self.run.board.status().during(CheckName::Rules)?;
+        let after = self.status()?;
         let counters = [Counter::RowsIn, Counter::RowsOut, Counter::SamplesOver];
         at_least(rule, &after, &counters.map(|counter| (counter, counter.in_status(&before))))
     }
@@ -102,7 +102,7 @@ impl Rules<'_, '_> {
     /// cleared ones, but the link does not make one each time.
     fn cleared(&mut self) -> Result<(), End> {
         self.right_frames(&[FRAME])?;
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         let had_each_once = self.run.board.had_each_packet_once(&before);
         let retries = self.run.board.tally().retries;
         let told = self.clear()?;
@@ -111,7 +111,7 @@ impl Rules<'_, '_> {
             let counters = [Counter::RowsIn, Counter::RowsOut, Counter::MostLatency];
             at_least(None, &told, &counters.map(|counter| (counter, counter.in_status(&before))))?;
         }
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         self.not_counted(None, &status)
     }
 

@@ -6,8 +6,8 @@ use super::compared::Compared;
 use super::rows::{FRAME, GENERATION};
 use super::{Rules, miscounted};
 use crate::board::RowTiming;
-use crate::result::{CheckName, Counter, Rule};
-use crate::run::findings::{During, End};
+use crate::result::{Counter, Rule};
+use crate::run::findings::End;
 use crate::run::plan::variations::Build;
 
 /// The rows of a frame. The first one is not stretched.
@@ -32,9 +32,9 @@ impl Rules<'_, '_> {
         let Some((compared, over)) = Compared::of_twelve_bits(&self.small, FRAME, &made, depth) else {
             return Ok(());
         };
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         self.frames(Rule::Samples, compared)?;
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         let counted = status.samples_over.wrapping_sub(before.samples_over);
         // A late copy of an old request may have cleared the counter.
         if counted == over || !self.run.board.had_each_packet_once(&status) {

@@ -120,7 +120,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     /// Tries all rules, and returns how many requests were answered as they must be.
     fn all(mut self) -> Result<usize, End> {
         self.drop_rows()?;
-        self.before = self.run.board.status().during(CheckName::Rules)?;
+        self.before = self.status()?;
         self.requests()?;
         self.tables()?;
         self.damage()?;
@@ -254,6 +254,10 @@ impl<'a, 'run> Rules<'a, 'run> {
     fn set(&mut self, geometry: &Geometry, timing: RowTiming) -> Result<(), End> {
         (self.width, self.height) = (geometry.width(), geometry.height());
         self.run.board.configure(geometry, timing, Datapath::RowFactors).during(CheckName::Rules)
+    }
+
+    fn status(&mut self) -> Result<Status, End> {
+        self.run.board.status().during(CheckName::Rules)
     }
 
     fn drop_rows(&mut self) -> Result<(), End> {

@@ -5,8 +5,8 @@ use halfrow_protocol::message::RefusalCode;
 use super::Rules;
 use super::counts::at_least;
 use crate::board::Response;
-use crate::result::{CheckName, Counter};
-use crate::run::findings::{During, End};
+use crate::result::Counter;
+use crate::run::findings::End;
 
 /// How many refusals came.
 #[derive(Clone, Copy, Default)]
@@ -32,7 +32,7 @@ impl Rules<'_, '_> {
     /// The board must count at least the refusals that came in this session: whatever a link loses or doubles, each was
     /// sent for a request.
     pub(super) fn refusals_counted(&mut self) -> Result<(), End> {
-        let after = self.run.board.status().during(CheckName::Rules)?;
+        let after = self.status()?;
         let (Refusals { own, foreign }, before) = (self.refusals, self.before);
         at_least(
             None,

@@ -197,7 +197,7 @@ impl Rules<'_, '_> {
         let mut has_come = false;
         for _ in 0..TRIES {
             self.give(0);
-            let status = self.run.board.status().during(CheckName::Rules)?;
+            let status = self.status()?;
             if status.core_busy == 1 {
                 return Ok(());
             }
@@ -314,7 +314,7 @@ impl Rules<'_, '_> {
 
     /// Whether nothing was sent again since there were `retries`, and nothing reached the board twice.
     pub(super) fn is_calm(&mut self, retries: u64) -> Result<bool, End> {
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         let board = &self.run.board;
         Ok(board.tally().retries == retries && board.had_each_packet_once(&status))
     }
@@ -367,7 +367,7 @@ impl Rules<'_, '_> {
 
     /// The board's row numbers must be the host's.
     fn counted(&mut self) -> Result<(), End> {
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         let right = self.run.board.acknowledged();
         equal(
             Some(Rule::RowNumber),

@@ -96,7 +96,7 @@ impl Rules<'_, '_> {
     /// Another host must be told that the board is held, and for how long at most.
     fn held(&mut self) -> Result<(), End> {
         let begun = self.run.board.now();
-        self.run.board.status().during(CheckName::Rules)?;
+        self.status()?;
         let said = self.run.board.greet_as_another_host();
         if matches!(said, Ok(Response::Replied(_))) {
             let took = self.run.board.now().saturating_sub(begun);
@@ -118,7 +118,7 @@ impl Rules<'_, '_> {
 
     /// Another host that takes the board over must get it, whoever holds it.
     fn taken_over(&mut self) -> Result<(), End> {
-        self.run.board.status().during(CheckName::Rules)?;
+        self.status()?;
         self.ends_right()?;
         let said = self.run.board.take_over_as_another_host().map(|said| match said {
             Response::Replied(_) => Response::Replied(Vec::new()),
@@ -168,7 +168,7 @@ impl Rules<'_, '_> {
             let again = rules.run.board.greet_again().during(CheckName::Rules)?.session;
             if again != own {
                 // The window is not known until the board has answered in the new session.
-                rules.run.board.status().during(CheckName::Rules)?;
+                rules.status()?;
                 return Err(another_session(own, again));
             }
             rules.right += 1;
@@ -206,7 +206,7 @@ impl Rules<'_, '_> {
         if self.height > 2 {
             self.enter()?;
         }
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         self.given = Given::default();
         self.next_session()?;
         self.begun_anew(Rule::NewSession, &before)?;
@@ -217,7 +217,7 @@ impl Rules<'_, '_> {
             self.sums(Rule::NewSession, 1)?;
         }
         self.right_frames(&[frame, FRAME])?;
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         rows_numbered(&status, self.run.board.packets_numbered())
     }
 
@@ -230,7 +230,7 @@ impl Rules<'_, '_> {
         let frame = self.expect_others_from(SECOND_ROW)?;
         let burst = self.start(Burst { mode, ..burst })?;
         self.look(&burst, 0, FEW, Awaited::under_way(FEW))?;
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         self.next_session()?;
         self.begun_anew(Rule::NewSession, &before)?;
         self.right_frames(&[FRAME])?;
@@ -246,7 +246,7 @@ impl Rules<'_, '_> {
         for _ in 0..TIMES {
             self.drop_rows()?;
             self.rows_again()?;
-            let before = self.run.board.status().during(CheckName::Rules)?;
+            let before = self.status()?;
             let own = self.run.board.session();
             self.close(own)?;
             match self.greet() {
@@ -312,7 +312,7 @@ impl Rules<'_, '_> {
     /// After HELLO no row, burst, commit or count may be left of the session before. Tables and configuration must be as they
     /// were at the status `before`.
     fn begun_anew(&mut self, rule: Rule, before: &Status) -> Result<(), End> {
-        let status = self.run.board.status().during(CheckName::Rules)?;
+        let status = self.status()?;
         self.not_counted(Some(rule), &status)?;
         equal(
             Some(rule),

@@ -73,9 +73,9 @@ impl Rules<'_, '_> {
     /// Damaged packets must be counted by their kind. What stands between host and board may drop some of a kind, such as
     /// those that do not unstuff, or all of both.
     fn damage_counted(&mut self) -> Result<(), End> {
-        let before = self.run.board.status().during(CheckName::Rules)?;
+        let before = self.status()?;
         let (_, [crc, framing]) = self.after_damage()?;
-        let after = self.run.board.status().during(CheckName::Rules)?;
+        let after = self.status()?;
         if !self.run.board.had_each_packet_once(&after) {
             return Ok(());
         }
