@@ -127,6 +127,12 @@ impl Run<'_> {
         self.board.configure(geometry, RowTiming::default(), datapath).during(CheckName::AtSpeed)
     }
 
+    /// Puts the tables of `generation` into the bank that is not active.
+    fn put_aside(&mut self, generation: &Generation) -> Result<(), End> {
+        self.board.upload(&generation.tables, &generation.kernel).during(CheckName::AtSpeed)?;
+        self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation).map(drop)
+    }
+
     /// Has the board make the burst. A wrong frame or a wrong count ends the run.
     fn judge_frames(&mut self, plan: &BurstPlan, tables: &[Generation]) -> Result<BurstSeen, End> {
         let (ends_early, progress) = (EndsEarly { when_wrong: self.plan.fail_fast, at: None }, self.progress);
@@ -189,8 +195,7 @@ impl Run<'_> {
         let datapath = datapath_of_all(tables);
         for (place, generation) in tables.iter().enumerate() {
             self.set(generation.tables.geometry(), datapath)?;
-            self.board.upload(&generation.tables, &generation.kernel).during(CheckName::AtSpeed)?;
-            self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
+            self.put_aside(generation)?;
             // In a frame of another height the entries of a grid are at other places.
             let rows = if generation.tables.shape().is_some() { usize::MAX } else { 1 };
             let first_rows = generation.upper(rows.min(generation.tables.geometry().height()));
@@ -215,8 +220,7 @@ impl Run<'_> {
         let Some(decoy) = decoy.filter(can_have) else {
             return Ok(vec![active]);
         };
-        self.board.upload(&decoy.tables, &decoy.kernel).during(CheckName::AtSpeed)?;
-        self.check_read_back(CheckName::AtSpeed, Bank::Shadow, &decoy)?;
+        self.put_aside(&decoy)?;
         Ok(vec![active, decoy])
     }
 

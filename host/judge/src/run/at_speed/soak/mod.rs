@@ -9,7 +9,7 @@ use std::time::Duration;
 use super::burst::{BurstPlan, LONGEST_LOOK};
 use super::watched::{BurstSeen, EndsEarly, MiscountSeen};
 use super::{NONE, price};
-use crate::board::{Bank, Bursts, RowTiming};
+use crate::board::Bursts;
 use crate::progress::{Event, Step};
 use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength};
 use crate::run::findings::exercised::Exercised;
@@ -229,8 +229,7 @@ impl Run<'_> {
     fn tables_of_burst(&mut self, draw: u32) -> Result<Vec<Generation>, End> {
         self.sessions.start_afresh(self.board).during(CheckName::AtSpeed)?;
         let tables = &self.plan.tables;
-        let configured = self.board.configure(tables.geometry(), RowTiming::default(), datapath_of(tables));
-        configured.during(CheckName::AtSpeed)?;
+        self.set(tables.geometry(), datapath_of(tables))?;
         let mut tables: Vec<_> =
             self.generations.iter().filter(|it| [DECOY, JUDGED].contains(&it.number)).cloned().collect();
         if (draw / 2).is_multiple_of(2) {
@@ -239,8 +238,7 @@ impl Run<'_> {
         tables.truncate(self.board.capabilities.table_banks.into());
         let mut active = 0;
         for (place, generation) in tables.iter().enumerate() {
-            self.board.upload(&generation.tables, &generation.kernel).during(CheckName::AtSpeed)?;
-            self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
+            self.put_aside(generation)?;
             if place == 0 || !self.board.knows_shape_of(&generation.tables) {
                 self.activate(generation)?;
                 active = place;
