@@ -95,39 +95,28 @@ pub struct Optics {
     pub camera: Camera,
     /// The equidistant lens of the same R, through which built-in frames are rendered.
     pub lens: Equidistant,
-    /// Whether the real lens is another one.
-    is_calibrated: bool,
     /// The row of the axis; none for the middle.
     pub centre_y: Option<f64>,
     /// How its tables are found.
     pub by: TablesBy,
     /// What the lens is, for people.
     pub name: String,
-    /// The file that describes it, if one does.
+    /// The file that describes it; none for an equidistant lens.
     pub file: Option<Input>,
 }
 
 impl Optics {
     /// An equidistant lens, with its axis in row `centre_y` of the frames of `camera`, or in their middle.
-    #[must_use]
-    pub fn equidistant(camera: Camera, lens: Equidistant, centre_y: Option<f64>, by: TablesBy) -> Self {
+    fn equidistant(camera: Camera, lens: Equidistant, centre_y: Option<f64>, by: TablesBy) -> Self {
         let name = "equidistant lens".to_owned();
-        Self { camera, lens, is_calibrated: false, centre_y, by, name, file: None }
+        Self { camera, lens, centre_y, by, name, file: None }
     }
 
-    /// The calibrated lens of `camera`, of the kind `model`, as `file` describes it.
-    ///
-    /// # Errors
-    /// [`LensError`] when built-in frames cannot be rendered through a lens of its radius.
-    pub fn calibrated(
-        camera: Camera,
-        model: LensModel,
-        file: Input,
-        by: TablesBy,
-    ) -> Result<Self, LensError> {
+    /// The calibrated lens of `camera`, of the kind `model`, as `file` describes it. An error when built-in frames cannot be
+    /// rendered through a lens of its radius.
+    fn calibrated(camera: Camera, model: LensModel, file: Input, by: TablesBy) -> Result<Self, LensError> {
         Ok(Self {
             lens: Equidistant::from_radius(camera.radius())?,
-            is_calibrated: true,
             centre_y: Some(camera.centre().1),
             camera,
             by,
@@ -160,7 +149,7 @@ impl Optics {
             TablesBy::Exact { entries, k: None } => self.camera.best_grid(entries)?,
             TablesBy::Exact { entries, k: Some(k) } => self.camera.best_grid_with_k(k, entries)?,
             TablesBy::Fitting => self.camera.fitted(),
-            TablesBy::Equation9 if self.is_calibrated => self.camera.equation_9(),
+            TablesBy::Equation9 if self.file.is_some() => self.camera.equation_9(),
             // From R as it was given. The camera would compute it from f.
             TablesBy::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
         })

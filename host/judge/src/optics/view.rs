@@ -40,18 +40,12 @@ impl Default for View {
 
 impl View {
     /// Frames of `(width, height)`, unless this view gives another size.
-    ///
-    /// # Errors
-    /// [`OpticsError::Geometry`] when no board takes them.
-    pub fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, OpticsError> {
+    fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, OpticsError> {
         Ok(Geometry::centred(self.width.unwrap_or(width), self.height.unwrap_or(height), self.depth)?)
     }
 
     /// The lens with its axis at `centre`, unless this view gives another place.
-    ///
-    /// # Errors
-    /// [`OpticsError::Camera`] when frames of `geometry` cannot have it.
-    pub fn camera(
+    fn camera(
         &self,
         geometry: Geometry,
         lens: CalibratedLens,
