@@ -301,19 +301,20 @@ impl Board {
     }
 }
 
-fn reset_to(conversation: &mut Conversation, reset: Reset, step: Step) -> Result<(), BoardError> {
-    let next_row = reset.next_row;
-    let reset = Request::Reset(reset);
-    conversation.request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
-    conversation.session.acknowledged = next_row;
-    Ok(())
+/// Returns the window in the board's answer.
+fn reset_to(conversation: &mut Conversation, reset: Reset, step: Step) -> Result<u32, BoardError> {
+    let request = Request::Reset(reset);
+    let answer = conversation.ask(&Outgoing::Request(&request), step, |_| true)?;
+    take_reply(Kind::Reset, &answer, |reply| matches!(reply, Reply::Reset).then_some(()))?;
+    conversation.session.acknowledged = reset.next_row;
+    Ok(answer.header.window)
 }
 
 fn close(conversation: &mut Conversation) {
     let reset = Reset { level: ResetLevel::Session, next_row: conversation.credit() };
     match conversation.disregarding_stop(|conversation| reset_to(conversation, reset, Step::Close)) {
         // The board answers a repeated RESET so when the reply to the first was lost: the session is closed.
-        Ok(()) | Err(BoardError::SessionLost) => {}
+        Ok(_) | Err(BoardError::SessionLost) => {}
         Err(error) => tracing::debug!("the session was not closed: {error}"),
     }
 }

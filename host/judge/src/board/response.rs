@@ -10,7 +10,7 @@ use halfrow_protocol::{Kind, Packet, samples};
 use super::answer::{OwnedPacket, status_in, take_reply};
 use super::deadlines::Step;
 use super::sent_requests::Outgoing;
-use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, rows};
+use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, reset_to, rows};
 
 /// The board's answer to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -202,11 +202,8 @@ impl Board {
     /// Like [`Self::credit_after_reset`].
     pub(crate) fn credit_after_reset_to(&mut self, next_row: u32) -> Result<u32, BoardError> {
         let reset = Reset { level: ResetLevel::Rows, next_row };
-        let request = Request::Reset(reset);
-        let answer = self.conversation.ask(&Outgoing::Request(&request), Step::Request, |_| true)?;
-        take_reply(Kind::Reset, &answer, |reply| matches!(reply, Reply::Reset).then_some(()))?;
-        self.conversation.session.acknowledged = reset.next_row;
-        Ok(answer.header.window.saturating_sub(reset.next_row))
+        let window = reset_to(&mut self.conversation, reset, Step::Request)?;
+        Ok(window.saturating_sub(next_row))
     }
 
     /// Drops the rows inside the board, which then waits for row sequence number `next_row`, a number not sent yet.
