@@ -1,6 +1,8 @@
 //! What a recording says about its run, so that the same conversation can be held again. The frames come from the rows
 //! that were sent, since their files may be elsewhere.
 
+mod sent;
+
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -10,10 +12,11 @@ use halfrow_model::{Equidistant, Frame, FrameError, Geometry, LensError, Phase, 
 use serde::{Deserialize, Serialize};
 
 use super::{AtSpeed, FrameSource, JUDGED, Plan, Provenance, RunOptions, Selection, SessionIds, Vary};
-use crate::board::{RetryLimit, Sent};
+use crate::board::RetryLimit;
 use crate::frames::{Builtin, UnknownBuiltin};
 use crate::link::{Candidate, LinkError, Lost, Recorder, Recording, RecordingError, RecordingFile};
 use crate::tables::{ContentError, TableFile};
+use sent::Sent;
 
 /// The plan of a recorded run.
 #[derive(Debug, Serialize, Deserialize)]

@@ -8,16 +8,16 @@ use halfrow_protocol::{Decoder, samples};
 
 /// Rows and commits among recorded bytes.
 #[derive(Debug, Default)]
-pub(crate) struct Sent {
+pub(super) struct Sent {
     /// The first frame of each committed generation.
-    pub(crate) first_frames: BTreeMap<u8, u16>,
+    pub(super) first_frames: BTreeMap<u8, u16>,
     rows: BTreeMap<(u16, u16), Vec<u16>>,
 }
 
 impl Sent {
     /// Finds them in all bytes that a host sent, given in `pieces`. Rows of frames that are not `wanted` are left out.
     #[must_use]
-    pub(crate) fn find<'a>(pieces: impl Iterator<Item = &'a [u8]>, wanted: impl Fn(u16) -> bool) -> Self {
+    pub(super) fn find<'a>(pieces: impl Iterator<Item = &'a [u8]>, wanted: impl Fn(u16) -> bool) -> Self {
         let mut sent = Self::default();
         let mut decoder = Decoder::new();
         for mut bytes in pieces {
@@ -45,7 +45,7 @@ impl Sent {
 
     /// The samples of frame `number`, `width` × `height`; rows that were never sent are black.
     #[must_use]
-    pub(crate) fn frame(&self, number: u16, width: usize, height: usize) -> Vec<u16> {
+    pub(super) fn frame(&self, number: u16, width: usize, height: usize) -> Vec<u16> {
         let mut frame = vec![0; width * height];
         for ((_, row), samples) in self.rows.range((number, 0)..=(number, u16::MAX)) {
             if let Some(place) = frame.chunks_exact_mut(width).nth(usize::from(*row))
