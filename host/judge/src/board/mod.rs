@@ -3,6 +3,7 @@
 
 mod answer;
 mod bursts;
+mod by_hand;
 mod conduct;
 mod conversation;
 mod counted;
@@ -14,7 +15,6 @@ mod legal;
 mod nature;
 mod open_options;
 mod received;
-mod response;
 mod retry_limit;
 mod rows;
 mod sent_requests;
@@ -39,6 +39,7 @@ use sent_requests::Outgoing;
 
 use crate::link::Link;
 pub(crate) use bursts::{Fetched, Trapped};
+pub(crate) use by_hand::{CameAgain, Response};
 pub(crate) use conduct::Misconduct;
 pub(crate) use counted::Miscount;
 pub use error::{BoardError, OpenFailed};
@@ -47,7 +48,6 @@ pub(crate) use legal::{LEAST_ENTRIES, frame_blanking, frame_clocks, grids, possi
 pub(crate) use nature::Shown;
 pub use open_options::{OpenOptions, WhenHeld};
 pub use received::{Had, Received};
-pub(crate) use response::{CameAgain, Response};
 pub use retry_limit::RetryLimit;
 pub(crate) use rows::{Given, Unjudged, Unreturned};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};

@@ -6,9 +6,9 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Hello, Refusal, RefusalCode, Request, ResetLevel, Welcome};
 
 use super::answer::OwnedPacket;
+use super::by_hand::{Response, said};
 use super::counted::Counted;
 use super::deadlines::Step;
-use super::response::{Response, said};
 use super::sent_requests::Outgoing;
 use super::{Board, BoardError, OpenOptions, VERSION, WhenHeld, greet, greet_or_take_over, is_for};
 

@@ -1,4 +1,5 @@
-//! Requests of any form, and the board's answers, for tests of what it refuses.
+//! A board by hand: what the rules of a run send, in any form, and the answers as they come. So do those who look for a lost row or
+//! try a window.
 
 use std::iter;
 
