@@ -37,7 +37,7 @@ const OF_SENTENCES: [&str; 3] = ["reason", "remedy", "why"];
 
 /// `text` with the flag after each setting that it names, as in `take the board over (--take-over)`.
 #[must_use]
-pub fn named(text: &str) -> String {
+pub(crate) fn named(text: &str) -> String {
     named_outside(text, &[])
 }
 
@@ -61,7 +61,7 @@ fn named_outside(text: &str, names: &[&str]) -> String {
 
 /// `problem` and its causes with the flag after each setting that their words name, but not inside of a name.
 #[must_use]
-pub fn named_in(problem: Problem) -> Problem {
+pub(crate) fn named_in(problem: Problem) -> Problem {
     let chain = std::iter::once(&problem).chain(&problem.causes);
     let parameters = chain.flat_map(|problem| problem.parameters.clone());
     let names: Vec<_> = parameters

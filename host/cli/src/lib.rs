@@ -12,11 +12,11 @@ mod document;
 pub mod failure;
 mod files;
 pub mod flags;
-pub mod pool;
+mod pool;
 mod progress;
 pub mod serve;
 pub mod settings;
 pub mod signals;
 pub mod text;
 
-pub use halfrow_program::{console, exit, guard, json};
+use halfrow_program::{console, exit, json};

@@ -3,11 +3,11 @@
 use std::process::ExitCode;
 
 use halfrow_cli::commands::Cli;
-use halfrow_cli::exit::Exit;
 use halfrow_cli::failure::Failure;
-use halfrow_cli::{console, guard, signals};
+use halfrow_cli::signals;
 use halfrow_program::built::Built;
-use halfrow_program::{line, log};
+use halfrow_program::exit::Exit;
+use halfrow_program::{console, guard, line, log};
 
 const BUILT: Built = Built {
     features: if cfg!(feature = "sim") { &["sim"] } else { &[] },

@@ -112,7 +112,7 @@ pub(crate) fn resolved(target: Target) -> Result<Target, PoolError> {
 
 /// Whether the lease of the board was lost, so that it may be somebody else's by now. That ends the run.
 #[must_use]
-pub fn is_lost() -> bool {
+pub(crate) fn is_lost() -> bool {
     LOST.load(Ordering::Relaxed)
 }
 

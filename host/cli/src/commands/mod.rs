@@ -42,15 +42,15 @@ use halfrow::reference;
 use line::{Command, Line};
 
 /// What every command gets beside its own arguments.
-pub struct Context {
+pub(crate) struct Context {
     /// The values of the settings file; the default without one.
-    pub settings: Settings,
+    pub(crate) settings: Settings,
     /// The path of that file, whether it exists or not.
-    pub settings_file: Option<PathBuf>,
+    pub(crate) settings_file: Option<PathBuf>,
     /// Whether to show no progress.
-    pub quiet: bool,
+    pub(crate) quiet: bool,
     /// Whether the result is wanted as JSON.
-    pub json: bool,
+    pub(crate) json: bool,
 }
 
 impl Context {
