@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
-use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, Kernel, LensError, Phase};
+use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, LensError, Phase};
 use halfrow_program::number::any;
 
 use crate::call_error::CallError;
@@ -259,11 +259,6 @@ impl LensArguments {
 /// The help of an option that takes a kernel.
 pub(crate) fn kernel_help(instead: &str) -> String {
     format!("The kernel: {}, or a file{instead}", kernels::names(", "))
-}
-
-/// A kernel by name, or from a kernel file.
-pub(crate) fn kernel(name: &OsStr) -> Result<Kernel, Failure> {
-    Ok(optics::kernel(name)?)
 }
 
 /// The tables `named` if given, otherwise those of the lens; `kernel_name` replaces the kernel of the table file.

@@ -227,7 +227,7 @@ fn rows(images: &[RgbImage]) -> u64 {
 }
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
-    let kernel = optics::kernel(&arguments.kernel)?;
+    let kernel = halfrow::optics::kernel(&arguments.kernel)?;
     let (_, images) =
         photographs(&paths(&arguments.images).map_err(Failure::call)?).map_err(Failure::call)?;
     let watched = context.progress();

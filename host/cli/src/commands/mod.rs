@@ -204,15 +204,6 @@ fn print_or_tell(exit: Exit, text: &str) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Prints a JSON result, the only output of the command.
-fn print_json(result: &impl serde::Serialize) -> Result<(), Failure> {
-    print(&json_text(result)?)
-}
-
-fn json_text(result: &impl serde::Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(result).map_err(Failure::error)
-}
-
 /// Prints a result, the only output of the command.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     console::print(text).map_err(Failure::error)

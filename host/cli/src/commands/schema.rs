@@ -3,7 +3,7 @@
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::{Failure, codes, print_json};
+use super::{Failure, codes, print};
 use crate::call_error::CallError;
 use crate::exit::Exit;
 
@@ -30,6 +30,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     schema["$defs"]["code"]["enum"] =
         codes::all().into_iter().map(|entry| Value::String(entry.code)).collect();
-    print_json(&schema)?;
+    print(&serde_json::to_string_pretty(&schema).map_err(Failure::error)?)?;
     Ok(Exit::Pass)
 }
