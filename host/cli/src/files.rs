@@ -1,9 +1,8 @@
-//! Where a command writes, checked before anything is done.
+//! Making the folder that a command writes into.
 
 use std::path::Path;
 
 use crate::call_error::CallError;
-pub(crate) use halfrow_program::files::prepare_files;
 
 /// Makes a folder and its parents.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CallError> {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use halfrow_program::files::prepare_files;
 use halfrow_program::number::{any, whole_number};
 
 use super::board::{BoardArguments, check_fault, wrong_board};
@@ -14,7 +15,6 @@ use super::table_file::{NamedTables, TableArgument};
 use crate::commands::{Context, codes};
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::files::prepare_files;
 use crate::settings::Settings;
 use crate::{console, flags, text};
 use halfrow::call::{self, FilesError, Input};

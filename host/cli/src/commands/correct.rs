@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use halfrow_model::Frame;
+use halfrow_program::files::prepare_files;
 use serde_json::json;
 
 use super::{Context, Failure};
@@ -21,7 +22,6 @@ use crate::call_error::CallError;
 use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
-use crate::files::prepare_files;
 use crate::settings::Settings;
 use halfrow::frames::{
     self, Fitting, Format, Orientation, ReadOptions, Scene, WriteError, parallel, preview,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use halfrow_program::files::prepare_files;
 use halfrow_program::number::whole_number;
 use serde_json::json;
 
@@ -12,7 +13,7 @@ use crate::arguments::optics::LensArguments;
 use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
-use crate::files::{make_folder, prepare_files};
+use crate::files::make_folder;
 use halfrow::frames::{self, Builtin};
 
 #[derive(Debug, Args)]

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use clap::{Args, Subcommand, ValueEnum};
 use halfrow_model::{Kernel, Taps};
+use halfrow_program::files::prepare_files;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -16,7 +17,6 @@ use crate::call_error::CallError;
 use crate::console;
 use crate::document::{print_result, tell_result};
 use crate::exit::Exit;
-use crate::files::prepare_files;
 use halfrow::files::check_regular;
 use halfrow::frames::preview::RgbImage;
 use halfrow::frames::{FrameFile, landscape};

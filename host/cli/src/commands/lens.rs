@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use halfrow_model::{GridShape, LONGEST_RING};
+use halfrow_program::files::prepare_files;
 use serde_json::{Map, Value, json};
 
 use super::{Context, Failure, print};
@@ -12,7 +13,6 @@ use crate::arguments::optics::LensArguments;
 use crate::console;
 use crate::document::{print_result, tell_result};
 use crate::exit::Exit;
-use crate::files::prepare_files;
 use halfrow::frames::{self, HeatMap};
 use halfrow::lenses::LensContentError;
 use halfrow::optics::{Optics, OpticsError, TablesBy};

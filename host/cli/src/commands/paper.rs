@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use halfrow_program::files::prepare_files;
 
 use super::{Context, Failure};
 use crate::arguments::board::{self, BoardArguments, Replays};
@@ -12,7 +13,6 @@ use crate::arguments::given::{Decider, Given};
 use crate::call_error::CallError;
 use crate::console;
 use crate::exit::Exit;
-use crate::files::prepare_files;
 use crate::settings::Settings;
 use halfrow::board::Board;
 use halfrow::call::Files;

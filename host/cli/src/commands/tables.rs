@@ -4,6 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 use clap::Args;
+use halfrow_program::files::prepare_files;
 use serde_json::json;
 
 use super::{Context, Failure};
@@ -12,7 +13,6 @@ use crate::arguments::optics::{self, LensArguments};
 use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
-use crate::files::prepare_files;
 use halfrow::optics::outside_circle;
 use halfrow::tables::{TableFile, TableFormat};
 use halfrow::words::count;
