@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 
 fn about(source: &str) -> Option<serde_json::Map<String, serde_json::Value>> {
     let mut about = serde_json::Map::new();
-    about.insert("made_by".to_owned(), concat!("halfrow ", env!("CARGO_PKG_VERSION")).into());
+    about.insert("made_by".to_owned(), format!("halfrow {}", halfrow::VERSION).into());
     about.insert("from".to_owned(), source.into());
     Some(about)
 }
