@@ -92,6 +92,12 @@ impl Suspect {
         Self { defect, account: Account::Nothing, explained: 0.0 }
     }
 
+    /// A suspect that gives the signatures of `explained` of `wrong` frames that the board made itself.
+    pub(crate) fn of_signatures(defect: Defect, wrong: usize, explained: usize) -> Self {
+        let account = Account::Signatures { wrong, explained };
+        Self { defect, account, explained: explained as f64 / wrong as f64 }
+    }
+
     /// What it leaves unexplained; none if it explains everything, or names no defect that could.
     #[must_use]
     pub fn shortfall(&self) -> Option<Shortfall> {

@@ -3,7 +3,7 @@
 use super::burst::BurstPlan;
 use super::predicted::signer;
 use super::watched::BurstSeen;
-use crate::result::{Account, Defect, Suspect};
+use crate::result::{Defect, Suspect};
 use crate::run::plan::Generation;
 
 /// The suspect, if the first wrong frame that has another before it has the signature that this one must have.
@@ -21,7 +21,5 @@ pub(super) fn records_late(plan: &BurstPlan, tables: &[Generation], watched: &Bu
         return None;
     }
     let (wrong, explained) = (watched.wrong_frames.len(), 1 + late.filter(|is_late| *is_late).count());
-    let share = explained as f64 / wrong as f64;
-    let account = Account::Signatures { wrong, explained };
-    Some(Suspect { defect: Defect::RecordsLate {}, account, explained: share })
+    Some(Suspect::of_signatures(Defect::RecordsLate {}, wrong, explained))
 }

@@ -5,7 +5,7 @@ use halfrow_model::{Signer, TableSet, frame_signature};
 use super::burst::BurstPlan;
 use super::predicted::signer;
 use super::watched::{BurstSeen, WrongFrame};
-use crate::result::{Account, Defect, MadeWith, StaleFrames, Suspect};
+use crate::result::{Defect, MadeWith, StaleFrames, Suspect};
 use crate::run::plan::Generation;
 
 /// The suspect, if some number of first rows of the first wrong frame, made with the tables of the other bank, give its
@@ -17,13 +17,11 @@ pub(super) fn tables_late(plan: &BurstPlan, tables: &[Generation], watched: &Bur
     let rows = late.next()??;
     let (wrong, explained) =
         (watched.wrong_frames.len(), 1 + late.filter(|also| *also == Some(rows)).count());
-    let account = Account::Signatures { wrong, explained };
-    let share = explained as f64 / wrong as f64;
     let first = watched.wrong_frames.first()?.n;
     // Before the first frame there is no other, so no change that could come late: it has the wrong tables.
     let defect =
         if first == 0 { stale(plan, [active, shadow], first) } else { Defect::TablesChangeLate { rows } };
-    Some(Suspect { defect, account, explained: share })
+    Some(Suspect::of_signatures(defect, wrong, explained))
 }
 
 /// The defect that makes frame `n` with the tables of the other bank.
