@@ -53,8 +53,7 @@ impl Rules<'_, '_> {
     /// `finest` with the CRC of a grid that reads back right and of a kernel that does not. The grid's entries are the
     /// row factors that the bank holds.
     fn kernel_of_grid(&mut self, finest: Commit) -> Result<(), End> {
-        let shape = finest.shape.and_then(|Shape { v, k }| GridShape::new(v.into(), k.into()).ok());
-        let entries = shape.map(|shape| shape.entries(&of_height(&self.small.geometry, self.height)));
+        let entries = self.entries_of_grid(finest, self.height);
         let there = self.small.tables[1].tables.to_bytes();
         let grid = entries.and_then(|entries| there.get(..entries * Table::Grid.entry_bytes()));
         let Some(grid) = grid else { return Ok(()) };
@@ -62,11 +61,17 @@ impl Rules<'_, '_> {
         self.refused(Rule::Shape, &Request::Commit(other), RefusalCode::TableCrc, Table::Kernel as u16)
     }
 
+    /// The entries that the grid of `commit` has for small frames of `rows` rows.
+    fn entries_of_grid(&self, commit: Commit, rows: usize) -> Option<usize> {
+        let Shape { v, k } = commit.shape?;
+        let shape = GridShape::new(v.into(), k.into()).ok()?;
+        Some(shape.entries(&of_height(&self.small.geometry, rows)))
+    }
+
     /// The finest grid for frames of the greatest height, if a bank does not hold it.
     fn too_many_entries(&mut self, grids: Grids, finest: Commit) -> Result<(), End> {
         let rows = self.capabilities.max_height.into();
-        let shape = finest.shape.and_then(|Shape { v, k }| GridShape::new(v.into(), k.into()).ok());
-        let entries = shape.map(|shape| shape.entries(&of_height(&self.small.geometry, rows)));
+        let entries = self.entries_of_grid(finest, rows);
         if entries.is_none_or(|entries| entries <= grids.entries.into()) {
             return Ok(());
         }
