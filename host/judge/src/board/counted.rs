@@ -72,7 +72,7 @@ impl Counted {
     }
 
     /// Whether nothing was lost and nothing came twice, by all counts since the counters were cleared.
-    pub(super) fn is_calm(&self) -> bool {
+    pub(super) fn lost_and_doubled_none(&self) -> bool {
         self.lost == 0 && !self.is_disturbed
     }
 

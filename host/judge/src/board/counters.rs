@@ -73,7 +73,8 @@ impl Board {
     /// Whether every packet sent since the board's counters were cleared reached it whole, and once.
     #[must_use]
     pub(crate) fn had_each_packet_once(&self, status: &Status) -> bool {
-        u64::from(status.packets) == self.packets_since_clear() && self.conversation.counted.is_calm()
+        u64::from(status.packets) == self.packets_since_clear()
+            && self.conversation.counted.lost_and_doubled_none()
     }
 
     /// Whether no packet was repeated since the board's counters were cleared.

@@ -97,7 +97,7 @@ impl Run<'_> {
         echoed &= self.echoes_pass()?;
         let status = self.board.status()?;
         let is_clean = [status.damaged(), status.foreign_packets] == [0; 2];
-        if !echoed || !is_clean || !is_calm(before, self.board.tally()) {
+        if !echoed || !is_clean || !had_no_trouble(before, self.board.tally()) {
             return Ok(Replay::Troubled);
         }
         let reached = self.board.had_each_packet_once(&status);
@@ -123,7 +123,7 @@ impl Run<'_> {
 }
 
 /// Whether, as far as the host can see, nothing was lost, damaged, late or doubled between two tallies.
-fn is_calm(before: Tally, after: Tally) -> bool {
+fn had_no_trouble(before: Tally, after: Tally) -> bool {
     let troubles = |tally: Tally| (tally.retries, tally.strays, tally.damaged_in, tally.line_errors.sum());
     troubles(before) == troubles(after)
 }
