@@ -9,8 +9,8 @@ use rand_pcg::Pcg64Mcg;
 use super::bursts::{Awaited, PATIENCE};
 use super::compared::Compared;
 use super::rows::{FRAME, GENERATION};
-use super::small::{ROWS, TALL as TALL_ROWS};
-use super::{Rules, longer};
+use super::small::TALL as TALL_ROWS;
+use super::{Rules, longer, rows_of_rules};
 use crate::board::Capabilities;
 use crate::reference::correct;
 use crate::result::{CheckName, Rule};
@@ -35,11 +35,10 @@ fn rows_of_tallest(capabilities: &Capabilities) -> usize {
 
 /// Rows of the tallest frame that a board makes for the rules.
 pub(in crate::run) fn tallest_of_rules(capabilities: &Capabilities, has_trap: bool) -> usize {
-    let small = ROWS.min(capabilities.max_height.into());
     if has_trap {
         rows_of_tallest(capabilities).max(TALL_ROWS.min(capabilities.max_height.into()))
     } else {
-        small
+        rows_of_rules(capabilities).0
     }
 }
 
