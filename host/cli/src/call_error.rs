@@ -23,12 +23,12 @@ pub(crate) enum CallError {
     /// The command `correct` was given neither a board nor the model.
     #[error("neither a board nor the model is named to correct with; give --model or --board TARGET")]
     NobodyCorrects,
-    /// A recording was named where a board is needed that can answer to new frames.
+    /// A recording was named where a board must answer what it was not asked before.
     #[error(
         "a recording answers only what it was asked when it was made; name another board, or judge it again with \
          `halfrow verify`"
     )]
-    RecordingCorrects,
+    RecordingAnswersNothingNew,
     /// The mock board's fault cannot show in this run.
     #[error("the fault of {target} would change nothing: {reason}")]
     FaultWithoutEffect { target: String, reason: String },

@@ -165,7 +165,7 @@ fn a_board_that_can_never_be_greeted_is_refused_before_anything_is_loaded() {
         ("serial:/dev/nonesuch,board=ulx3s,flow=rtscts", "target-option-contradicts-board"),
         ("usb,channel=e", "target-option-unknown"),
         ("mock,foo=1", "target-options-wrong"),
-        ("replay:run.rec", "recording-corrects-nothing"),
+        ("replay:run.rec", "recording-answers-nothing-new"),
         ("pool:ulx3s", "bitstream-for-board-of-pool"),
         ("mock", "bitstream-for-built-in-board"),
     ] {

@@ -66,7 +66,7 @@ pub(crate) fn helped(argument: Arg, replays: Replays, without: &str) -> Arg {
 /// Refuses a recording where a board must answer new requests.
 pub(crate) fn refuse_recording(target: &Target) -> Result<(), Failure> {
     match kinds::board_of(target) {
-        BoardKind::Replay => Err(wrong_board(Failure::call(CallError::RecordingCorrects))),
+        BoardKind::Replay => Err(wrong_board(Failure::call(CallError::RecordingAnswersNothingNew))),
         _ => Ok(()),
     }
 }

@@ -34,7 +34,7 @@ codes::codes! {
         NoDocument [command] => "command-without-document",
         CodeUnknown [code] => "code-unknown",
         NobodyCorrects => "corrector-missing",
-        RecordingCorrects => "recording-corrects-nothing",
+        RecordingAnswersNothingNew => "recording-answers-nothing-new",
         FaultWithoutEffect [target, reason] => "fault-without-effect",
         OtherThanTables [option, path] => "option-contradicts-tables",
         PitchAlone => "pixel-pitch-without-effect",

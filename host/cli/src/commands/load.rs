@@ -124,7 +124,7 @@ fn unfit(target: &Target) -> Option<anyhow::Error> {
     match kinds::board_of(target) {
         _ if target.kind == pool::POOL => Some(LoadError::OfPool { target: name() }.into()),
         BoardKind::Hardware => None,
-        BoardKind::Replay => Some(CallError::RecordingCorrects.into()),
+        BoardKind::Replay => Some(CallError::RecordingAnswersNothingNew.into()),
         _ => Some(LoadError::BuiltIn { target: name() }.into()),
     }
 }
