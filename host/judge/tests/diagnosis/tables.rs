@@ -11,7 +11,7 @@ fn stale_tables_are_named_frame_by_frame() {
         for clause in [
             "frame 0 made as it went in",
             "frame 1 made with the tables of generation 2 instead of 1",
-            "frame 2, 4 to 8 made with the tables of generation 1 instead of 2",
+            "frames 2, 4 to 8 made with the tables of generation 1 instead of 2",
         ] {
             assert!(only.evidence().contains(clause), "{}", only.evidence());
         }
