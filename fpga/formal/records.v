@@ -1,5 +1,6 @@
 // halfrow_records under frames that begin, leave their record or are dropped, and a host that has some of the records, at any
-// time: no record is written over one that the host has not got, whatever the order. The monitor counts by itself.
+// time: no record is written over one that the host has not got, whatever the order, nor the reply's head over a record. The
+// monitor counts by itself.
 `default_nettype none
 
 module records #(
@@ -29,16 +30,19 @@ module records #(
     wire free;
     wire [SLOT_BITS:0] kept;
     wire [SLOT_BITS-1:0] made, oldest;
+    wire [SLOT_BITS+5:0] written_at;
     wire [7:0] reply;
     wire frame_begins = wants_frame && free && inside != 2'd2 && !wants_drop;
     wire recorded = wants_record && inside != 2'd0 && !wants_drop;
     wire frees = wants_records && wanted <= unread;
+    wire record_write = wants_write && inside != 2'd0;
+    wire head_write = wants_head && !wants_write;
 
     halfrow_records dut (
         .clk(clk), .rst(rst), .frame_begins(frame_begins), .free(free), .drop(wants_drop),
-        .record_write(wants_write && inside != 2'd0), .head_write(wants_head && !wants_write), .record_place(place),
+        .record_write(record_write), .head_write(head_write), .record_place(place),
         .record_byte(value), .recorded(recorded), .frees(frees), .freed(wanted), .kept(kept), .reply_begins(1'b0),
-        .advance(1'b0), .value(reply), .made(made), .oldest(oldest));
+        .advance(1'b0), .value(reply), .made(made), .oldest(oldest), .written_at(written_at));
 
     always @(posedge clk)
         if (rst) begin
@@ -54,8 +58,12 @@ module records #(
             told: assert (kept == unread);
             room_for_all: assert (unread + inside <= RECORDS);
             in_its_turn: assert (made == ((oldest + unread) & (RECORDS - 1)));
-            if (wants_write && inside != 2'd0)
+            if (record_write) begin
                 none_overwritten: assert (unread < RECORDS);
+                in_its_slot: assert (written_at == {1'b0, made, place});
+            end
+            if (head_write)
+                behind_them_all: assert (written_at == {1'b1, {SLOT_BITS{1'b0}}, place});
             free_again: assert (free == (unread + inside < RECORDS));
         end
 endmodule
