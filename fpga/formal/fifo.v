@@ -47,7 +47,7 @@ module fifo #(
         if (running && !rst) begin
             holds: assert (count <= MOST && count == used + out_valid);
             in_order: assert (!out_valid || (count != 0 && out_data == words[1:0]));
-            takes: assert (in_ready || count >= MOST - 1);
+            takes: assert (in_ready || count >= MOST);
             gives: assert (!nothing_shown || out_valid);
         end
 endmodule
