@@ -67,7 +67,7 @@ module silence #(
             if (ends)
                 not_before: assert (over || over_before);
             if (was_over)
-                closed: assert (!session_open && !burst);
+                closed: assert (!session_open);
         end
 endmodule
 
