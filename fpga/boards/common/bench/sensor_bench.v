@@ -145,10 +145,10 @@ module sensor_bench;
         #5000 running = 1;
         chosen;
         picture(-1);
-        due("and again behind a PIXCLK that stopped in a row", 3, cut);
+        due("and again behind a PIXCLK that stopped in a row", 3, 1);
         say_hello;
         picture(-1);
-        due("but not during a session", 3, cut);
+        due("but not during a session", 3, 1);
         $display("DONE");
         $finish;
     end
