@@ -10,7 +10,6 @@ module halfrow_dispatcher_bench;
 
     localparam HOST = 32'h00c0ffee, OTHER = 32'h00000b0b;
     integer k, m;
-    reg [7:0] known;
 
     task milliseconds(input integer count);
         repeat (count) begin

@@ -1,6 +1,6 @@
-// A chip that keeps the data sheet's times at their worst, behind pads of 5 ns, or where a board writes of 6 ns,
-// the miniSpartan6+'s bound, with a WR# of 3 ns, and looks whether the other side keeps them: pulses, set-up and hold, no read when empty, no write when full, never two drivers, nothing driven that may not be, SIWU# long
-// enough, only when writing has stopped, and then always. Both directions at once, with gaps and stalls, at three clocks.
+// A chip that keeps the data sheet's times at their worst, behind pads of 5 ns (6 ns for data, 3 ns for WR#: the bounds of the miniSpartan6+),
+// looks whether the other side keeps them: pulses, set-up and hold, no read when empty, no write when full, never two drivers, nothing driven
+// that may not be, SIWU# long enough, only when writing has stopped, and then always. Both directions at once, with gaps and stalls, at three clocks.
 `default_nettype none
 
 module halfrow_ft245_bench;

@@ -56,8 +56,10 @@ static Bytes unstuffed(const Bytes &piece) {
     Bytes out;
     for (size_t at = 0; at < piece.size();) {
         size_t code = piece[at++];
+        if (code - 1 > piece.size() - at)
+            fail("a packet that is cut short");
         for (size_t k = 1; k < code; k++)
-            out.push_back(piece.at(at++));
+            out.push_back(piece[at++]);
         if (code != 255 && at < piece.size())
             out.push_back(0);
     }
@@ -226,8 +228,8 @@ struct Link {
                 fail("no answer within 20 million clocks");
         Bytes packet = lines.packets.front();
         lines.packets.pop_front();
-        Bytes body(packet.begin(), packet.end() - 4);
-        if (packet.size() < 16 || crc_of(body) != get(packet, packet.size() - 4, 4) || get(packet, 4, 2) != packet.size() - 16)
+        if (packet.size() < 16 || crc_of(Bytes(packet.begin(), packet.end() - 4)) != get(packet, packet.size() - 4, 4) ||
+            get(packet, 4, 2) != packet.size() - 16)
             fail("a packet that is damaged");
         return packet;
     }

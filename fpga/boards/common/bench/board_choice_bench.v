@@ -29,7 +29,7 @@ module board_choice_bench;
     BUFGMUX #(.CLK_SEL_TYPE("ASYNC")) core_buffer (.I0(link_clk), .I1(pixclk), .S(choose_pixclk), .O(clk));
 
     // Nothing outside of reset may see a short pulse, and a reset must last some clocks on both sides of a change.
-    real    edge_time = 0, last_change = 0;
+    real    edge_time = 0;
     integer short_pulses = 0, bare_changes = 0, clocks_in_reset = 0, short_resets = 0;
 
     always @(clk) begin
