@@ -1,7 +1,7 @@
 //! Signals that end a command: Ctrl-C, SIGTERM, and SIGHUP from a terminal or connection that is gone.
 //!
 //! A command with a board asks for them (`heed`): the first one is noted, so that the command can end in order, and a second
-//! ends the program at once, unless it is the first one again within half a second. Any other command ends at the first. However it ends,
+//! ends the program at once, unless it is the first one again (`AGAIN`). Any other command ends at the first. However it ends,
 //! nothing half written stays, except for what there is of a recording.
 
 use std::io;

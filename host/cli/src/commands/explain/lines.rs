@@ -59,10 +59,10 @@ const LINES: &[Line] = &[
     },
     Line {
         word: "frame",
-        meaning: "The head of a table with a line for each streamed frame: how many of its samples came back other than the model has them, where \
-                  the first of them is, and how far off the worst is.",
-        fault: "the board's, if a frame has differences",
-        act: "Look at what the line `suspect` says.",
+        meaning: "The head of a table of the streamed frames, of which long runs leave out equal ones: how many samples of each came back \
+                  other than the model has them, where the first of them is, and how far off the worst is.",
+        fault: "depends on the verdict",
+        act: "Look at the verdict, and at the line `suspect` if there is one.",
         place: "`frames` of a result",
     },
     Line {
