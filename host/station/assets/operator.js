@@ -141,6 +141,7 @@ async function today() {
   if (!counted?.ok) return;
   const footer = by("today"), isFocused = footer.contains(document.activeElement);
   footer.innerHTML = await counted.text();
+  todayIsStale ||= Boolean(footer.querySelector("[data-again]"));
   if (isFocused) footer.querySelector("a")?.focus({ preventScroll: true });
 }
 

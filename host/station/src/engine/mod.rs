@@ -177,8 +177,11 @@ impl Engine {
     /// Whether its thread works, as seen within the last seconds.
     #[must_use]
     pub(crate) fn is_well(&self) -> bool {
-        let live = self.live.lock();
-        live.worked.is_some_and(|worked| worked.elapsed() < SILENT)
+        self.is_well_at(Instant::now())
+    }
+
+    fn is_well_at(&self, now: Instant) -> bool {
+        self.live.lock().worked.is_some_and(|worked| now.duration_since(worked) < SILENT)
     }
 
     /// Makes it look as if its thread, which has ended, was last seen to work this long ago.
@@ -272,10 +275,9 @@ pub(crate) mod tests {
     fn an_engine_that_was_silent_for_five_seconds_is_not_well() {
         let folder = tempfile::tempdir().unwrap();
         let (_, engine) = stopped(folder.path());
-        let is_well = [0, 4, 6].map(|seconds| {
-            engine.silent_for(Duration::from_secs(seconds));
-            engine.is_well()
-        });
+        engine.silent_for(Duration::ZERO);
+        let worked = engine.live.lock().worked.unwrap();
+        let is_well = [0, 4_999, 5_000].map(|ms| engine.is_well_at(worked + Duration::from_millis(ms)));
         assert_eq!(is_well, [true, true, false]);
     }
 }

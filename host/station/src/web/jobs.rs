@@ -135,7 +135,7 @@ fn shelf(visit: &Visit, boards: &[SharedBoard]) -> Markup {
                 tr {
                     td.name { b { (show::said(&board.name)) } }
                     td { (show::said(&board.kind)) } td { (show::said(&board.target)) }
-                    td { (unit(&board.serial)) } td { (show::said(&board.station)) }
+                    td { @if !board.serial.is_empty() { (unit(&board.serial)) } } td { (show::said(&board.station)) }
                     td { (state(visit, board)) }
                 }
             } }

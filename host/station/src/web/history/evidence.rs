@@ -42,15 +42,15 @@ impl Whereabouts {
         attachments: Vec<Attachment>,
     ) -> Result<Vec<(Attachment, Self)>, StoreError> {
         let is_here = |one: &Attachment| now.has_evidence(&one.sha256);
-        let is_asked = !now.is_plant() && !attachments.iter().all(is_here);
+        let is_asked = !attachments.iter().all(is_here);
         let removed = if is_asked { now.pruned_of(run)? } else { BTreeSet::new() };
         let place = |one: &Attachment| {
-            if now.is_plant() {
-                Self::AtStation
-            } else if is_here(one) {
+            if is_here(one) {
                 Self::Here
             } else if removed.contains(&one.sha256) {
                 Self::Removed
+            } else if now.is_plant() {
+                Self::AtStation
             } else {
                 Self::Lost
             }

@@ -27,6 +27,9 @@ type Defects = BTreeMap<String, Vec<Said>>;
 /// The most runs that are shown; a unit that checks shifts has thousands.
 const MOST_RUNS: usize = 200;
 
+/// The most records that are read for a page.
+const MOST_RECORDS: usize = 20;
+
 pub(super) async fn page(
     State(app): State<App>,
     visit: Visit,
@@ -66,14 +69,14 @@ pub(super) async fn shown(
     Ok(page.with_status(&visit, status))
 }
 
-/// The suspects of each run that has some, with their codes: the tables have them in English alone.
+/// The suspects of the newest runs that have some, with their codes: the tables have them in English alone, as older runs keep them.
 fn told(now: &Snapshot, units: &[Unit]) -> Defects {
     let shown = units.iter().flat_map(|unit| unit.runs.iter().take(MOST_RUNS));
     let of_run = |run: &UnitRun| {
         let (record, _) = now.record(run.line.record_sha256.as_ref()?).ok()?;
         Some((run.line.id.clone(), super::run::defects(&record)))
     };
-    shown.filter(|run| !run.suspects.is_empty()).filter_map(of_run).collect()
+    shown.filter(|run| !run.suspects.is_empty()).take(MOST_RECORDS).filter_map(of_run).collect()
 }
 
 fn of(

@@ -34,7 +34,7 @@ pub(super) async fn answered(app: App, visit: Visit, answer: ScanReply) -> Resul
 async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Response, Trouble> {
     let Lanes { live, hints, .. } = app.lanes(&visit)?;
     let (now, today) = (live.now(), counted(&app, &visit).await);
-    let changes = today.is_err() || app.settings().sink_names().next().is_some();
+    let changes = app.settings().sink_names().next().is_some();
     let head = html! {
         link rel="stylesheet" href="/assets/operator.css";
         noscript { link rel="stylesheet" href="/assets/still.css"; }
@@ -156,13 +156,13 @@ fn by_hand(visit: &Visit, now: &Now, unscripted: Option<&str>) -> Markup {
 }
 
 /// What was judged today, for everybody who may look.
-pub(super) async fn today(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    Ok(Html(counted(&app, &visit).await?.into_string()).into_response())
+pub(super) async fn today(State(app): State<App>, visit: Visit) -> Response {
+    Html(or_why(counted(&app, &visit).await).into_string()).into_response()
 }
 
-/// What was judged today, or why that cannot be told: lanes are shown whatever the store says.
+/// What was judged today, or why that cannot be told, after which it is asked again: lanes are shown whatever the store says.
 fn or_why(today: Result<Markup, Trouble>) -> Markup {
-    today.unwrap_or_else(|trouble| trouble.told())
+    today.unwrap_or_else(|trouble| html! { span data-again { (trouble.told()) } })
 }
 
 async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {

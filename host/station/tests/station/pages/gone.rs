@@ -28,6 +28,9 @@ fn lanes_are_shown_while_the_folder_is_away_and_no_page_asks_for_another_one() {
             let (_, today) = shown.split_once("<footer id=\"today\"").unwrap();
             assert!(today.contains(gone), "{path}: {today}");
         }
+        let today = here.get("/today").send();
+        let told = today.text();
+        assert!(today.status == 200 && told.contains("data-again") && told.contains(gone), "{told}");
         if is_mount_point {
             fs::remove_dir(&data).unwrap();
         }

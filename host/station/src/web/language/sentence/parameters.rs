@@ -94,7 +94,7 @@ impl Words {
         let words = match doing.as_str()? {
             "a connection" => self.say("told.a-connection"),
             "a run" => self.say("told.a-run"),
-            look if look.starts_with("to tell ") || look.starts_with("to be read") => self.say("told.a-look"),
+            look if look.starts_with("to tell ") || look.starts_with("to be ") => self.say("told.a-look"),
             _ => return None,
         };
         Some(words.to_owned())
