@@ -28,6 +28,7 @@ mod lost_rows;
 mod outages;
 mod recordings;
 mod refusals;
+mod refused_later;
 mod reopened;
 mod rule_by_rule;
 mod rules;

@@ -181,11 +181,16 @@ impl Run<'_> {
             if let Err(End::Failed { .. }) = after {
                 return Ok(last);
             }
-            last = Some(segment);
             if let Err(end) = after.and_then(|()| self.prepare(segment)) {
                 self.findings.attempt.seen_wrong |= !seen.is_right();
+                if end.is_answer() && !seen.rows_are_right() {
+                    // A board whose rows were wrong is not known to be in the state in which it must carry this out.
+                    self.findings.attempt.refused = true;
+                    self.judge_over_outages(last, seen)?;
+                }
                 self.return_to(segment, 0, end)?;
             }
+            last = Some(segment);
             self.stream(segment, source, seen)?;
             if self.plan.fail_fast && seen.differences() > 0 {
                 return Ok(Some(segment));

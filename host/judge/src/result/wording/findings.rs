@@ -255,11 +255,14 @@ fn counter_wrong(counter: Counter, (counted, right): (u32, u32), rule: Option<Ru
     let (counted, right) = (grouped(counted), grouped(right));
     let (words, bound) = (counter.words(), counter.bound());
     let tried = rule.map(|rule| format!(" (rule: {})", rules::meaning(rule))).unwrap_or_default();
-    format!("the board counts {counted} {words}; the right number is {bound}{right}{tried}")
+    // Of damaged packets only what was counted meanwhile is compared.
+    let is_of_damaged = matches!(counter, Counter::CrcErrors | Counter::FramingErrors);
+    let more = if is_of_damaged && rule == Some(Rule::Damage) { " more" } else { "" };
+    format!("the board counts {counted}{more} {words}; the right number is {bound}{right}{tried}")
 }
 
 /// How many samples and frames of how many differ.
-fn samples_differ(
+pub(crate) fn samples_differ(
     (differences, samples): (usize, usize),
     (differing_frames, frames): (usize, usize),
 ) -> String {
@@ -267,9 +270,9 @@ fn samples_differ(
     format!("{differ}, in {} of {}", grouped(differing_frames), count(frames, "frame"))
 }
 
-/// How many of the samples and frames differ, and `why` the run then broke off.
-pub(crate) fn broken_off(samples: (usize, usize), frames: (usize, usize), why: &str) -> String {
-    format!("{}, and the run broke off before that was looked into: {why}", samples_differ(samples, frames))
+/// What was `wrong` with rows, and `why` the run then broke off.
+pub(crate) fn broken_off(wrong: &str, why: &str) -> String {
+    format!("{wrong}, and the run broke off before that was looked into: {why}")
 }
 
 fn table(defect: &Defect, account: &Account) -> String {

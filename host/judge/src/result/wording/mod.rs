@@ -24,8 +24,8 @@ pub(crate) use at_speed::{named_clock, seen_of_clock};
 pub use bench::at_the_bench;
 pub use evidence::evidence;
 pub(super) use findings::because;
-pub(crate) use findings::broken_off;
 pub use findings::sentence;
+pub(crate) use findings::{broken_off, samples_differ};
 pub use not_exercised::not_exercised;
 pub use remedies::remedy;
 

@@ -128,15 +128,18 @@ fn ending(
     }
 }
 
-/// Why the run broke off, after the differences that were then not looked into.
+/// Why the run broke off, after what was wrong with rows and was then not looked into.
 fn broken_off(why: Finding, seen: &Observations) -> Finding {
     let FrameTotals { frames, differing_frames, samples, differences } = seen.totals();
     let Finding::Problem(problem) = why else { return why };
-    if differing_frames == 0 {
+    let wrong = if differing_frames > 0 {
+        wording::samples_differ((differences, samples), (differing_frames, frames))
+    } else if let Some(wrong) = seen.wrong_beside_samples() {
+        wrong.sentence()
+    } else {
         return Finding::Problem(problem);
-    }
-    let (samples, frames) = ((differences, samples), (differing_frames, frames));
-    let message = wording::broken_off(samples, frames, &problem.message);
+    };
+    let message = wording::broken_off(&wrong, &problem.message);
     Finding::Problem(Box::new(Problem { message, ..*problem }))
 }
 

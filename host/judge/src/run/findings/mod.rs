@@ -29,6 +29,8 @@ pub(crate) struct Attempt {
     pub(crate) seen_wrong: bool,
     /// Why the link may have caused it.
     pub(crate) doubt: Option<Doubt>,
+    /// Whether the board refused something amid the frames, after rows that were wrong. It counts that refusal.
+    pub(crate) refused: bool,
     /// Whether some counters were not compared only because the board, unlike the host, says that its link is poor.
     pub(crate) leaves_counters_out: bool,
     /// Whether a board came back that has no serial number to identify it.

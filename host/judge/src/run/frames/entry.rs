@@ -4,7 +4,7 @@ use std::iter;
 
 use halfrow_model::row_signature;
 
-use crate::result::FlippedBit;
+use crate::result::{Finding, FlippedBit};
 
 /// The polynomial of CRC-32, reflected: flipping the last bit of a row changes the row's CRC by this.
 const LAST_BIT: u32 = 0xedb8_8320;
@@ -20,6 +20,14 @@ pub(crate) struct WrongEntry {
     pub(crate) frame: u16,
     /// The single bit of this row which, if flipped, gives the board's CRC; none if no single bit does.
     pub(crate) flipped: Option<FlippedBit>,
+}
+
+impl WrongEntry {
+    /// What was found of such rows.
+    pub(crate) fn finding(self) -> Finding {
+        let Self { rows, row, frame, flipped } = self;
+        Finding::RowsEnteredChanged { rows, row, frame, flipped }
+    }
 }
 
 /// The single bit of the row `sent`, of samples of `bits` bits, which gives the CRC `entered` when it is flipped.

@@ -50,9 +50,24 @@ impl WrongLatency {
 impl Observations {
     /// Whether nothing that was seen is wrong, judged or not.
     pub(crate) fn is_right(&self) -> bool {
-        let rows =
-            self.wrong_generation.is_none() && self.wrong_latency.is_none() && self.wrong_entry.is_none();
-        rows && self.wrong_pauses.is_none() && self.changed_tables.is_none() && self.differences() == 0
+        self.rows_are_right() && self.wrong_pauses.is_none() && self.changed_tables.is_none()
+    }
+
+    /// Whether no row is wrong, whatever is counted of it.
+    pub(crate) fn rows_are_right(&self) -> bool {
+        let told = self.wrong_generation.is_none() && self.wrong_latency.is_none();
+        told && self.wrong_entry.is_none() && self.differences() == 0
+    }
+
+    /// What was wrong with rows whose samples are right; none if nothing was.
+    pub(crate) fn wrong_beside_samples(&self) -> Option<Finding> {
+        let generation = self.wrong_generation.clone();
+        let entry = || self.wrong_entry.map(WrongEntry::finding);
+        let late = || {
+            let (rows, of_rows) = self.latency.map_or((0, 0), |latency| (latency.wrong_rows, latency.rows));
+            self.wrong_latency.as_ref().map(|first| first.finding(rows, of_rows))
+        };
+        generation.or_else(entry).or_else(late)
     }
 
     pub(crate) fn totals(&self) -> FrameTotals {

@@ -24,7 +24,8 @@ impl Run<'_> {
         let Findings { checks, attempt, .. } = &mut *self.findings;
         checks.lap(CheckName::Frames);
         // Counters are only right if all rows came back right: a run that ends early leaves rows inside.
-        let counters = frames.is_ok().then(|| counters(self.board, (&status, answered), seen, attempt));
+        let are_judged = frames.is_ok() && !attempt.refused;
+        let counters = are_judged.then(|| counters(self.board, (&status, answered), seen, attempt));
         attempt.leaves_counters_out = leaves_counters_out(self.board, &status);
         let mut ends = Vec::new();
         let results = [
@@ -123,8 +124,7 @@ fn changed_on_entry(wrong: WrongEntry, differs: bool, is_every_row: bool) -> End
     }
     let defect = Defect::RowsChangedOnEntry { rows, first: row, frame, flipped };
     let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 1.0 }];
-    let finding = Finding::RowsEnteredChanged { rows, row, frame, flipped };
-    End::suspecting(CheckName::Frames, finding, suspects)
+    End::suspecting(CheckName::Frames, wrong.finding(), suspects)
 }
 
 fn latency(seen: &Observations) -> Result<Finding, End> {
