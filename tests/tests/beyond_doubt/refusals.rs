@@ -28,6 +28,7 @@ fn a_refusal_of_what_a_board_says_that_it_can_is_its_own() {
         (Kind::TableCrc, RefusalCode::Range, Cause::Refused, own),
         (Kind::Status, RefusalCode::Kind, Cause::Refused, "every board must answer it"),
         (Kind::Burst, RefusalCode::Kind, Cause::Refused, own),
+        (Kind::Burst, RefusalCode::Range, Cause::Refused, own),
         (Kind::Commit, RefusalCode::Payload, Cause::Refused, own),
         (Kind::Commit, RefusalCode::NotReady, Cause::Station, passing),
         (Kind::Commit, RefusalCode::Range, Cause::Station, passing),

@@ -4,7 +4,7 @@ use halfrow::result::{Answer, CheckName, Counter, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{Refusal, RefusalCode, Reset, ResetLevel, Status};
-use halfrow_protocol::{Header, Kind, Packet, Reply, Request};
+use halfrow_protocol::{Header, Kind, Packet, Reply, Request, VERSION};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{failed_check, judge_by_plan, open};
 
@@ -94,6 +94,63 @@ fn a_greeting_that_is_repeated_must_open_no_session() {
     );
 }
 
+/// Where a board's answer to HELLO has its build and its serial number (WIRE.md, 00).
+const BUILD: usize = 10;
+const SERIAL: usize = 14;
+
+/// The report on a board that changes the byte `at` of its answers to greetings that are `meant`: to those with the first nonce
+/// after the first answer, or to those with another nonce.
+fn naming_itself(at: usize, meant: [bool; 2]) -> Report {
+    let mut first = None;
+    let altered = move |toward, mut packet: Passing| {
+        if toward == Toward::Host && packet.is(Kind::Hello) {
+            let nonce = packet.payload[..4].to_vec();
+            let is_first = first.is_none();
+            let is_another = *first.get_or_insert_with(|| nonce.clone()) != nonce;
+            packet.payload[at] ^= u8::from(!is_first && meant[usize::from(is_another)]);
+        }
+        vec![packet]
+    };
+    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+}
+
+#[test]
+fn a_board_must_say_each_time_who_it_is() {
+    for (at, meant) in [(SERIAL, [true, false]), (SERIAL, [false, true]), (BUILD, [true, true])] {
+        let report = naming_itself(at, meant);
+        let (rule, right, found) = broken(&report);
+        assert_eq!(rule, Rule::NewSession, "{}", report.headline());
+        assert!(right != found && matches!(found, Answer::Replied { .. }), "{}", report.headline());
+    }
+}
+
+/// It answers where the one before was, without the tables of that.
+#[test]
+fn a_board_in_the_place_of_another_makes_none_fail() {
+    const NOBODYS: u16 = 0x4242;
+    let (mut first, mut session) = (None, 0);
+    let altered = move |toward, mut packet: Passing| {
+        let Some((nonce, host)) = greeting(&packet).filter(|_| toward == Toward::Board) else {
+            if toward == Toward::Host && packet.is(Kind::Hello) {
+                session = packet.payload[9];
+                packet.payload[SERIAL] ^=
+                    u8::from(first.is_some_and(|(own, _)| packet.payload[..4] != u32::to_le_bytes(own)));
+            }
+            return Vec::from_iter((packet.header.sequence != NOBODYS).then_some(packet));
+        };
+        let (own, holder) = *first.get_or_insert((nonce, host));
+        let reset = Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 });
+        let header = Header { kind: reset.kind().code(), sequence: NOBODYS, session, ..Header::default() };
+        let reset = Passing { header, payload: payload(&reset) };
+        let opens = nonce != own && host == holder && packet.payload[8..10] == [VERSION; 2];
+        let resets = opens.then_some(reset);
+        resets.into_iter().chain([packet]).collect()
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
+    assert_eq!(report.finding, Finding::BoardExchanged {});
+}
+
 /// The report on a board that carries out a RESET with level `given` as one with level `done`.
 fn resetting(given: u8, done: u8) -> Report {
     hearing(move |packet| {
@@ -104,8 +161,8 @@ fn resetting(given: u8, done: u8) -> Report {
 }
 
 #[test]
-fn level_1_of_reset_must_close_the_session_and_level_2_must_not() {
-    for (given, done) in [(1, 0), (2, 1)] {
+fn each_level_of_reset_must_drop_what_it_names_and_no_more() {
+    for (given, done) in [(1, 0), (2, 1), (0, 2)] {
         assert_eq!(broken(&resetting(given, done)).0, Rule::Closed, "{given} as {done}");
     }
 }

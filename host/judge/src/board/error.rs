@@ -312,7 +312,7 @@ impl BoardError {
     /// Whether the board's answer is one that no sound board gives to that request.
     #[must_use]
     pub(crate) fn is_answer(&self) -> bool {
-        matches!(self.shown(), Some(Shown::Answer | Shown::NoCredit))
+        self.shown().is_some_and(Shown::is_answer)
     }
 
     /// What it shows of the board.

@@ -18,6 +18,15 @@ pub(crate) enum Shown {
     Answer,
     /// Such an answer: it refused a row of the run because it was beyond the window.
     NoCredit,
+    /// Such an answer: it refused a row or a burst because it had no configuration or no tables.
+    NotReady,
+}
+
+impl Shown {
+    /// Whether the board gave an answer that no sound board gives after what the run asked of it.
+    pub(crate) fn is_answer(self) -> bool {
+        matches!(self, Self::Answer | Self::NoCredit | Self::NotReady)
+    }
 }
 
 /// What an error means.
@@ -59,6 +68,11 @@ impl BoardError {
             Self::Refused { kind: Kind::RowIn, refusal } if refusal.code == RefusalCode::Credit => {
                 Nature::of(Some(Shown::NoCredit), Station)
             }
+            Self::Refused { kind: Kind::RowIn | Kind::Burst, refusal }
+                if refusal.code == RefusalCode::NotReady =>
+            {
+                Nature::of(Some(Shown::NotReady), Station)
+            }
             Self::Refused { refusal, .. } => {
                 Nature::of(Some(Shown::Answer), if is_own(refusal) { Refused } else { Station })
             }
@@ -91,12 +105,14 @@ fn of_link(error: &LinkError) -> Shown {
 /// Whether a request is refused only for its content and the board's abilities, whatever the board did before. Then the board
 /// does not do what its capabilities say, since this program asks for nothing else.
 pub(super) fn is_own(refusal: &Refusal) -> bool {
-    use Kind::{Configure, Expect, TableCrc, TableRead, TableWrite};
+    use Kind::{Burst, Configure, Expect, TableCrc, TableRead, TableWrite};
     let kind = Kind::from_code(refusal.kind);
     match refusal.code {
         RefusalCode::Kind | RefusalCode::Payload | RefusalCode::Taps => true,
         // A range of COMMIT, RECORDS and rows depends on what was set and played before.
-        RefusalCode::Range => matches!(kind, Some(Configure | Expect | TableCrc | TableRead | TableWrite)),
+        RefusalCode::Range => {
+            matches!(kind, Some(Burst | Configure | Expect | TableCrc | TableRead | TableWrite))
+        }
         _ => false,
     }
 }

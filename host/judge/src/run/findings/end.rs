@@ -99,12 +99,17 @@ impl End {
 
     /// Whether the board gave an answer that no sound board gives after what the run asked of it.
     pub(crate) fn is_answer(&self) -> bool {
-        matches!(self.shown(), Some(Shown::Answer | Shown::NoCredit))
+        self.shown().is_some_and(Shown::is_answer)
     }
 
     /// Whether the board refused a row of the run because it was beyond the window.
     pub(crate) fn is_without_credit(&self) -> bool {
         self.shown() == Some(Shown::NoCredit)
+    }
+
+    /// Whether the board refused a row or a burst because it had no configuration or no tables.
+    pub(crate) fn is_not_ready(&self) -> bool {
+        self.shown() == Some(Shown::NotReady)
     }
 
     pub(crate) fn is_unreachable(&self) -> bool {

@@ -119,6 +119,13 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     /// Tries all rules, and returns how many requests were answered as they must be.
     fn all(mut self) -> Result<usize, End> {
+        match self.each() {
+            Err(end) if end.is_not_ready() => Err(self.reset_too_far().unwrap_or(end)),
+            tried => tried.map(|()| self.right),
+        }
+    }
+
+    fn each(&mut self) -> Result<(), End> {
         self.drop_rows()?;
         self.before = self.status()?;
         self.requests()?;
@@ -139,8 +146,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         }
         self.refusals_counted()?;
         self.power_up()?;
-        self.closed()?;
-        Ok(self.right)
+        self.closed()
     }
 
     /// Ends with anything `said` but the answer `right`. A reply may be longer than that.

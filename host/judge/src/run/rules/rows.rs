@@ -66,6 +66,19 @@ impl Rules<'_, '_> {
         self.right_frames(&[FRAME])
     }
 
+    /// The FAIL of a board that is ready for rows and, after a RESET that must drop nothing but rows, is not; none if that is not so.
+    pub(super) fn reset_too_far(&mut self) -> Option<End> {
+        self.drop_rows().and_then(|()| self.rows_again()).ok()?;
+        self.row_too_wide(Rule::RowPlace).and_then(|()| self.drop_rows()).ok()?;
+        self.row_too_wide(Rule::Closed).err().filter(End::is_failed)
+    }
+
+    /// Sends a row of another width than the configuration's, which must be refused for that if there are tables.
+    fn row_too_wide(&mut self, rule: Rule) -> Result<(), End> {
+        let first = self.place(0);
+        self.row_refused(rule, RowPlace { width: first.width + 2, ..first }, RefusalCode::Row)
+    }
+
     /// Streams frames of which every row must come back right.
     pub(super) fn right_frames(&mut self, frames: &[u16]) -> Result<(), End> {
         let made = self.small.made(0, self.height, GENERATION);

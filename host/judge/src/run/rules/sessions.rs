@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use halfrow_protocol::message::{
-    Burst, BurstMode, Commit, Entries, Records, Refusal, RefusalCode, Request, Span, Table,
+    Burst, BurstMode, Commit, Entries, Records, Refusal, RefusalCode, Request, Span, Table, Welcome,
 };
 use halfrow_protocol::{Kind, VERSION};
 
@@ -13,11 +13,12 @@ use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
 use super::{FIRST_FACTOR, Refusals, Rules, broken};
 use crate::board::{Board, BoardError, Given, Response, Status};
-use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Identity, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::known_bursts;
 use crate::run::findings::{During, End};
 use crate::run::frames::counters::rows_numbered;
+use crate::verdict::Cause;
 
 /// How often a board must do what it must not, where a link or the board's supply could cause it too, though not every
 /// time: a late copy of an old HELLO also opens a session.
@@ -132,7 +133,8 @@ impl Rules<'_, '_> {
                 broken(Rule::Held, Kind::Hello, Answer::Replied { payload: String::new() }, held)
             }
             error => End::board(CheckName::Rules, &error),
-        })
+        })?;
+        self.same_board_greets()
     }
 
     /// A host that speaks no version that the board speaks must be refused. Which is the board's newest is not known.
@@ -165,12 +167,13 @@ impl Rules<'_, '_> {
         self.rows_again()?;
         self.counts_on(Some(Rule::NewSession), |rules| {
             let own = rules.run.board.session();
-            let again = rules.run.board.greet_again().during(CheckName::Rules)?.session;
-            if again != own {
+            let again = rules.run.board.greet_again().during(CheckName::Rules)?;
+            if again.session != own {
                 // The window is not known until the board has answered in the new session.
                 rules.status()?;
-                return Err(another_session(own, again));
+                return Err(another_session(own, again.session));
             }
+            rules.same_board(&again)?;
             rules.right += 1;
             Ok(())
         })
@@ -252,7 +255,7 @@ impl Rules<'_, '_> {
             match self.greet() {
                 Err(BoardError::Held { .. }) => return Ok(()),
                 Err(error) => return Err(End::board(CheckName::Rules, &error)),
-                Ok(()) => {}
+                Ok(()) => self.same_board_greets()?,
             }
             // Otherwise another host had the board meanwhile, or its supply failed.
             if self.run.board.session() == next(own) {
@@ -287,7 +290,30 @@ impl Rules<'_, '_> {
     /// Opens the next session. A doubt about the link in the session before stays.
     pub(super) fn next_session(&mut self) -> Result<(), End> {
         self.ends_right()?;
-        self.greet().during(CheckName::Rules)
+        self.greet().during(CheckName::Rules)?;
+        self.same_board_greets()
+    }
+
+    /// The board must have said in its answer to the last greeting who it is, as in its first one.
+    fn same_board_greets(&mut self) -> Result<(), End> {
+        let welcome = self.run.board.welcome;
+        self.same_board(&welcome)
+    }
+
+    /// The same of the answer `welcome`. One that names another board may come from another board, unless the tables are still there.
+    fn same_board(&mut self, welcome: &Welcome) -> Result<(), End> {
+        let Some(first) = &self.run.findings.board.identity else { return Ok(()) };
+        let now = Identity::of(welcome, &self.capabilities);
+        let [right, found] = [first, &now].map(|Identity { build, serial, .. }| Answer::Replied {
+            payload: format!("build {build} and serial number {serial}"),
+        });
+        if right == found {
+            return Ok(());
+        }
+        if self.status()?.generation == 0 {
+            return Err(End::error(CheckName::Identity, Cause::Refused, Finding::BoardExchanged {}));
+        }
+        Err(broken(Rule::NewSession, Kind::Hello, right, found))
     }
 
     fn greet(&mut self) -> Result<(), BoardError> {

@@ -4,7 +4,7 @@ use std::iter;
 
 use crate::board::{NumberedFrame, Unjudged};
 use crate::progress::Step;
-use crate::result::{CheckName, Finding};
+use crate::result::{CheckName, Finding, Identity};
 use crate::run::findings::{During, End};
 use crate::run::plan::Segment;
 use crate::run::steps::Run;
@@ -55,10 +55,13 @@ impl Run<'_> {
         let Some(patience) = self.sessions.patience_after(&end) else { return Err(end) };
         self.progress.step(Step::WaitForTheBoard);
         self.findings.attempt.link_broke(self.board);
-        let is_same = self.sessions.come_back(self.board, patience, &end)?;
+        let is_as_before = self.sessions.come_back(self.board, patience, &end)?;
+        // A board may have been exchanged without a sign and greeted since.
+        let now = Identity::of(&self.board.welcome, &self.board.capabilities);
+        let is_as_first = self.findings.board.identity.as_ref().is_none_or(|first| *first == now);
         // Two boards of the same build without serial numbers look the same.
         self.findings.attempt.came_back_unnumbered |= self.board.welcome.serial == 0;
-        if is_same {
+        if is_as_before && is_as_first {
             return Ok(());
         }
         Err(End::error(CheckName::Identity, Cause::Refused, Finding::BoardExchanged {}))
