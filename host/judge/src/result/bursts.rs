@@ -145,6 +145,14 @@ pub enum Repetition {
         #[serde(default)]
         only_there: bool,
     },
+    /// It was wrong again, or while it was repeated anyway, and what was kept has the number or the width of no row of it.
+    NoSuchRow {
+        /// Frames up to and including the first wrong one.
+        frames: u32,
+        /// As in [`Repetition::Trapped`].
+        #[serde(default)]
+        only_there: bool,
+    },
     /// It was wrong again, or while it was repeated anyway, and a row was kept whose samples are right, and whose signature is
     /// not the CRC of them.
     SignedWrong {
@@ -169,6 +177,7 @@ impl Repetition {
             | Self::NoTrap {}
             | Self::AllRight { .. }
             | Self::NothingTrapped { .. }
+            | Self::NoSuchRow { .. }
             | Self::SignedWrong { .. }
             | Self::Impossible {} => Streamed::NotTried,
         }

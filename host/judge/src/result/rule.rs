@@ -95,10 +95,19 @@ pub enum Answer {
         /// Its detail.
         detail: u16,
     },
+    /// A refusal that names another request than the one that it answers.
+    RefusedOther {
+        /// The kind that it names (WIRE.md, section 3).
+        kind: u8,
+        /// The refusal's code.
+        code: u8,
+        /// Its detail.
+        detail: u16,
+    },
     /// A reply.
     Replied {
         /// The first bytes of its payload, in hexadecimal; of one that begins as the right one does, what follows, and from which
-        /// byte on.
+        /// byte on; of an answer to HELLO that differs in them, build and serial number.
         payload: String,
     },
     /// Credit for rows.

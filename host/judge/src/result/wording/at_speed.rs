@@ -208,6 +208,10 @@ fn shown(repetition: &Repetition) -> String {
         Repetition::NothingTrapped { frames, only_there } => {
             format!("; {}, but the board kept no row that differs", wrong_there(*frames, *only_there))
         }
+        Repetition::NoSuchRow { frames, only_there } => format!(
+            "; {}, and the row that the board kept cannot be one of this burst",
+            wrong_there(*frames, *only_there)
+        ),
         Repetition::SignedWrong { frames, row, only_there } => format!(
             "; {}, and the board kept row {row}, whose samples are right and whose signature is not their CRC",
             wrong_there(*frames, *only_there)

@@ -1,5 +1,6 @@
 //! Words for what the rules of the wire have shown.
 
+use halfrow_protocol::Kind;
 use halfrow_protocol::message::RefusalCode;
 
 use super::at_speed::CHECK_TIMING;
@@ -45,6 +46,9 @@ fn must(right: &Answer, request: &str) -> String {
         Answer::Refused { code, detail } => {
             format!("refuse {request} as {}", refusal(*code, *detail))
         }
+        Answer::RefusedOther { kind, code, detail } => {
+            format!("answer {request} with {}", of_other(*kind, *code, *detail))
+        }
         Answer::Replied { payload } if payload.is_empty() => format!("carry out {request}"),
         Answer::Replied { payload } => format!("answer {request} with {payload}"),
         Answer::Credit { rows } => format!("give credit for {} after {request}", count(*rows, "row")),
@@ -65,6 +69,9 @@ fn must(right: &Answer, request: &str) -> String {
 fn did(found: &Answer) -> String {
     match found {
         Answer::Refused { code, detail } => format!("refused it as {}", refusal(*code, *detail)),
+        Answer::RefusedOther { kind, code, detail } => {
+            format!("answered with {}", of_other(*kind, *code, *detail))
+        }
         Answer::Replied { payload } if payload.is_empty() => "carried it out".to_owned(),
         Answer::Replied { payload } => format!("answered with {payload}"),
         Answer::Credit { rows } => format!("gave credit for {rows}"),
@@ -124,6 +131,12 @@ fn refusal(code: u8, detail: u16) -> String {
         0 => format!("`{}`", reason(code)),
         _ => format!("`{}`, detail {detail}", reason(code)),
     }
+}
+
+/// A refusal of a request of kind `kind`.
+fn of_other(kind: u8, code: u8, detail: u16) -> String {
+    let request = Kind::from_code(kind).map_or_else(|| format!("kind {kind:02x}"), |kind| kind.to_string());
+    format!("a refusal of {request} as {}", refusal(code, detail))
 }
 
 /// The refusal's name in WIRE.md, section 6.

@@ -42,6 +42,8 @@ enum RowVerdict {
     Differs(Box<MadeRows>),
     /// Its samples are right, and their CRC is not the signature that the board says.
     SignedWrong,
+    /// It is no row of the frame.
+    NoRow,
 }
 
 /// Rows, and the generation that made them.
@@ -154,6 +156,7 @@ impl Run<'_> {
         let told = trapped.and_then(|trapped| Some((trapped.row, self.kept(generation, content, &trapped)?)));
         let (row, seen) = match told {
             None => return Ok(Repetition::NothingTrapped { frames, only_there }.into()),
+            Some((_, RowVerdict::NoRow)) => return Ok(Repetition::NoSuchRow { frames, only_there }.into()),
             Some((row, RowVerdict::SignedWrong)) => return Ok(signed_wrong(frames, row, only_there)),
             Some((row, RowVerdict::Differs(seen))) => (row, seen),
         };
@@ -194,8 +197,8 @@ impl Run<'_> {
         self.unless_misconduct(CheckName::AtSpeed, streamed)
     }
 
-    /// What a trapped row shows of a frame that `generation` made of `content`; none if it is no row of that frame, if the
-    /// row is as it should be, or if neither its samples nor its signature are right.
+    /// What a trapped row shows of a frame that `generation` made of `content`; none if the row is as it
+    /// should be, or if neither its samples nor its signature are right.
     ///
     /// It is the first row of its burst that differs, so the rows above it were right: the diagnosis gets the frame up to
     /// this row.
@@ -204,7 +207,7 @@ impl Run<'_> {
         let own = generation.tables.geometry();
         let is_row = *row < own.height() && samples.len() == own.width();
         if !is_row {
-            return None;
+            return Some(RowVerdict::NoRow);
         }
         let above = correct_up_to(generation, content, row + 1, self.plan.phase)?.ending_in(samples)?;
         let is_right = above.evidence.found == above.evidence.expected;

@@ -1,7 +1,7 @@
 //! What a finding quotes of answers.
 
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::{FrameRecord, Records};
+use halfrow_protocol::message::{FrameRecord, Records, Refusal};
 
 use crate::board::Response;
 use crate::result::Answer;
@@ -29,8 +29,14 @@ pub(super) fn answer(said: &Response) -> Answer {
 }
 
 /// What is quoted of the right answer to a request of `kind` and of the one that came: of two replies that begin alike, what
-/// follows from the first byte that differs on.
+/// follows from the first byte that differs on; of a refusal in place of another, also the request that it names if that is wrong.
 pub(super) fn answers(kind: Kind, right: &Response, found: &Response) -> (Answer, Answer) {
+    if let (Response::Refused(expected), Response::Refused(came)) = (right, found)
+        && expected.kind != came.kind
+    {
+        let &Refusal { code, kind, detail } = came;
+        return (answer(right), Answer::RefusedOther { kind, code: code as u8, detail });
+    }
     let (Response::Replied(expected), Response::Replied(came)) = (right, found) else {
         return (answer(right), answer(found));
     };
@@ -81,7 +87,11 @@ fn field(kind: Kind, byte: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use halfrow_protocol::message::RefusalCode;
+
+    use super::super::rule_broken;
     use super::*;
+    use crate::result::Rule;
 
     fn quoted(kind: Kind, expected: &[u8], came: &[u8]) -> [String; 2] {
         let said = |payload: &[u8]| Response::Replied(payload.to_vec());
@@ -123,6 +133,19 @@ mod tests {
             assert_eq!(differing(bytes), None, "{bytes:?}");
         }
         assert_eq!(other_signatures(&right, &[0; 10 + 2 * 18], 40), None);
+    }
+
+    /// WIRE.md: 11 is TABLE_READ, 12 TABLE_CRC.
+    #[test]
+    fn a_refusal_of_another_request_is_told_from_the_right_one() {
+        let refused = |kind| Response::Refused(Refusal { code: RefusalCode::Payload, kind, detail: 0 });
+        let (right, found) = answers(Kind::TableRead, &refused(0x11), &refused(0x12));
+        let told = rule_broken(Rule::Payload, Kind::TableRead, right, found).sentence();
+        let must = "the board must refuse TABLE_READ as `payload`, but it";
+        assert!(
+            told.starts_with(&format!("{must} answered with a refusal of TABLE_CRC as `payload`")),
+            "{told}"
+        );
     }
 
     #[test]
