@@ -41,11 +41,10 @@ impl Whereabouts {
         run: &str,
         attachments: Vec<Attachment>,
     ) -> Result<Vec<(Attachment, Self)>, StoreError> {
-        let is_here = |one: &Attachment| now.has_evidence(&one.sha256);
-        let is_asked = !attachments.iter().all(is_here);
-        let removed = if is_asked { now.pruned_of(run)? } else { BTreeSet::new() };
-        let place = |one: &Attachment| {
-            if is_here(one) {
+        let are_here: Vec<_> = attachments.iter().map(|one| now.has_evidence(&one.sha256)).collect();
+        let removed = if are_here.contains(&false) { now.pruned_of(run)? } else { BTreeSet::new() };
+        let place = |one: &Attachment, is_here: bool| {
+            if is_here {
                 Self::Here
             } else if removed.contains(&one.sha256) {
                 Self::Removed
@@ -55,8 +54,11 @@ impl Whereabouts {
                 Self::Lost
             }
         };
-        let places: Vec<_> = attachments.iter().map(place).collect();
-        Ok(attachments.into_iter().zip(places).collect())
+        let placed = attachments.into_iter().zip(are_here).map(|(one, is_here)| {
+            let place = place(&one, is_here);
+            (one, place)
+        });
+        Ok(placed.collect())
     }
 }
 
