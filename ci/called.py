@@ -48,8 +48,11 @@ def outputs(file):
 def use(step, known, work, failed):
     """What actions of GitHub itself do, as far as it matters here, behind steps of which one may have failed."""
     match step["uses"].split("@")[0]:
-        case "actions/cache":
-            return {"cache-hit": ""}
+        case "actions/cache/restore":
+            return {"cache-hit": "", "cache-primary-key": filled(step["with"]["key"], known)}
+        case "actions/cache/save":
+            assert (work / filled(step["with"]["path"], known)).is_dir(), "there is no program to keep"
+            return {}
         case "actions/upload-artifact":
             name = filled(step["with"]["name"], known)
             assert name and "/" not in name, f"GitHub takes no artefact of the name `{name}`"

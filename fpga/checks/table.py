@@ -16,7 +16,7 @@ CLASSES = ["samples", "signature", "latency", "counters", "read-back", "rules", 
 HEAD = """# What a run finds
 
 Made by `scripts/hardware coverage`, as `coverage.py` and `proofs.py` say; nobody writes it by hand. {count:,} single faults that yosys drew with
-seed {seed} in the board's Verilog of build `{build}`, each judged by what `halfrow verify --width {width} --height {height} --radius {radius}` does.
+seed {seed} in the board's Verilog of build `{build}` (the CRC-32 of it and its parameters), each judged by what `halfrow verify --width {width} --height {height} --radius {radius}` does.
 
 Found: {found:,} of the {open:,} that are not proven to make no difference, {share:.1f} %. {checked} drawn ones of the {equivalent} proofs were
 checked by simulation at another size. How a fault is found says what failed first; an error is never a pass.

@@ -98,7 +98,7 @@ fn a_pass_says_what_share_of_faults_it_stands_for_where_it_may() {
     let measured = Some(CoverageReport { found: 1999, faults: 2000, equivalent: 100 });
     let share = "finds 99.9 % of 2,000 single faults of the Verilog at this geometry";
     assert_eq!(of(BoardKind::Sim, measured).as_deref(), Some(share));
-    assert_eq!(of(BoardKind::Hardware, None).as_deref(), Some("of this plan was not measured"));
+    assert_eq!(of(BoardKind::Hardware, None).as_deref(), Some("of this plan and build was not measured"));
     assert_eq!(of(BoardKind::Mock, measured), None);
     assert_eq!(report::wording::coverage(&Report { coverage: measured, ..made::fail().0 }), None);
 }

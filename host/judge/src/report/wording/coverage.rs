@@ -13,7 +13,7 @@ pub fn coverage(report: &Report) -> Option<String> {
         return None;
     }
     let Some(CoverageReport { found, faults, .. }) = report.coverage else {
-        return Some("of this plan was not measured".to_owned());
+        return Some("of this plan and build was not measured".to_owned());
     };
     // Rounded down, so as never to claim more than was measured.
     let share = (1000 * found / faults.max(1)) as f64 / 10.0;
