@@ -23,9 +23,6 @@ pub mod proxy;
 pub mod scenario;
 pub mod scenarios;
 pub mod served;
-#[cfg(feature = "sim")]
-pub mod simulated_core;
 pub mod system;
 pub mod through;
 pub mod usb;
-pub mod whole_board;

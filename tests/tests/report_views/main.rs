@@ -10,3 +10,4 @@ mod junit;
 mod made;
 mod page_size;
 mod pictures;
+mod text;

@@ -1,14 +1,10 @@
 //! The report for a terminal, of reports made by hand.
 
-// clippy.toml allows these in #[test] functions, but not in the functions that several tests call.
-#![allow(clippy::unwrap_used, clippy::panic)]
-
 use halfrow::compare::{Comparison, Difference};
 use halfrow::result::{BoardKind, Defect, FrameReport, MadeWith, Problem, Report, StaleFrames, Variation};
 use halfrow::verdict::Cause;
 
-#[path = "../../../tests/tests/report_views/made.rs"]
-mod made;
+use crate::made;
 
 /// The text without colours, as a pipe gets it.
 fn plain(report: &Report) -> String {

@@ -5,12 +5,12 @@ use std::collections::VecDeque;
 
 use halfrow_sim::{Core, CoreBuild, CoreInputs, CoreOutputs};
 
-use crate::cases::{Build, Case, Played};
-use crate::dice::Dice;
+use halfrow_tests::cases::{Build, Case, Played};
+use halfrow_tests::dice::Dice;
 
 /// The build of this core, for which cases are drawn.
 #[must_use]
-pub fn build(core: CoreBuild) -> Build {
+pub(crate) fn build(core: CoreBuild) -> Build {
     Build {
         latency: core.latency(),
         ring: core.ring(),
@@ -44,7 +44,7 @@ struct Bench<'a> {
 ///
 /// # Panics
 /// When it flags a row, marks a row's ends wrongly, or is not ready for a row in time.
-pub fn play(core: &mut Core, case: &Case, dice: &mut Dice) -> Played {
+pub(crate) fn play(core: &mut Core, case: &Case, dice: &mut Dice) -> Played {
     let mut bench = Bench::reset(core, case, dice);
     let frames = case.frames.iter().flat_map(|(_, _, frame)| frame.rows());
     for (row, samples) in frames.enumerate() {

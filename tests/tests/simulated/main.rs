@@ -1,7 +1,10 @@
 //! The Verilog compared with model and mock, the core alone and the whole board: every sample and every latency.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
-#![allow(clippy::unwrap_used)]
+// clippy.toml allows these inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod core;
+mod whole_board;
 
 use std::collections::BTreeMap;
 
@@ -13,8 +16,7 @@ use halfrow_sim::{Board, Core, CoreBuild, Front};
 use halfrow_tests::cases::{Build, Case, Played};
 use halfrow_tests::dice::Dice;
 use halfrow_tests::photographs::{self, filled};
-use halfrow_tests::simulated_core;
-use halfrow_tests::whole_board::{self, WholeBoard};
+use whole_board::WholeBoard;
 
 /// Plays `cases` cases on each build of the core.
 #[allow(clippy::print_stdout)]
@@ -25,8 +27,8 @@ fn cores_agree(cases: u64) {
         let (mut samples, mut rows) = (0, 0);
         for seed in 0..cases {
             let mut dice = Dice::new(seed);
-            let case = Case::draw(&mut dice, simulated_core::build(core_build), 3);
-            let played = simulated_core::play(&mut core, &case, &mut dice);
+            let case = Case::draw(&mut dice, core::build(core_build), 3);
+            let played = core::play(&mut core, &case, &mut dice);
             let expected = case.expected();
             assert!(played == expected, "{core_build:?}, case {seed}: {}", difference(&played, &expected));
             assert!(case.play_on_mock() == expected, "the mock on case {seed}");

@@ -7,10 +7,10 @@ use halfrow::board::{Board, Datapath, NumberedFrame, OpenOptions, ReturnedRow, R
 use halfrow::link::Link;
 use halfrow_model::{Frame, Kernel, TableSet};
 
-use crate::cases::{Build, Case, GridNeeds, Played};
+use halfrow_tests::cases::{Build, Case, GridNeeds, Played};
 
 /// An open session in which cases are played one after another.
-pub struct WholeBoard {
+pub(crate) struct WholeBoard {
     board: Board,
     next_frame: u16,
     /// Never 0, which is no generation, and never that of the tables before.
@@ -23,14 +23,14 @@ impl WholeBoard {
     /// # Panics
     /// When no board answers.
     #[must_use]
-    pub fn open(link: Box<dyn Link>) -> Self {
+    pub(crate) fn open(link: Box<dyn Link>) -> Self {
         let board = Board::open(link, &OpenOptions::default()).unwrap();
         Self { board, next_frame: 0, next_generation: 1 }
     }
 
     /// The build of this board, for which cases are drawn.
     #[must_use]
-    pub fn build(&self) -> Build {
+    pub(crate) fn build(&self) -> Build {
         let capabilities = self.board.capabilities();
         Build {
             latency: capabilities.latency,
@@ -50,7 +50,7 @@ impl WholeBoard {
     ///
     /// # Panics
     /// When the board refuses anything.
-    pub fn play(&mut self, case: &Case) -> Played {
+    pub(crate) fn play(&mut self, case: &Case) -> Played {
         let [(tables, kernel, first), (next_tables, next_kernel, second)] = &case.frames[..] else {
             panic!("{} frames instead of two", case.frames.len())
         };
@@ -88,7 +88,7 @@ impl WholeBoard {
 
 /// What comes out of [`WholeBoard::play`] according to the model.
 #[must_use]
-pub fn expected(case: &Case) -> Played {
+pub(crate) fn expected(case: &Case) -> Played {
     let mut whole = case.clone();
     whole.frames.insert(0, whole.frames[0].clone());
     whole.expected()
