@@ -4,20 +4,20 @@
 //! ends the program at once, unless it is the first one again (`AGAIN`). Any other command ends at the first. However it ends,
 //! nothing half written stays, except for what there is of a recording.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{OnceLock, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use crate::console;
 use crate::exit::Exit;
 use halfrow::files::written_aside::{self, Abandoned};
 use halfrow::verdict::StoppedBy;
-use halfrow_program::signals::is_ignored;
+use halfrow_program::signals::ending;
 
 /// How long the last message may take.
 const TOLD: Duration = Duration::from_millis(300);
@@ -44,19 +44,13 @@ pub struct Unheard(#[from] io::Error);
 /// # Errors
 /// [`Unheard`] when the system takes no handler or has no thread left.
 pub fn watch() -> Result<(), Unheard> {
-    let mut wanted = vec![SIGINT, SIGTERM];
-    // A program that is started with `nohup` must outlive the terminal.
-    if !is_ignored(SIGHUP) {
-        wanted.push(SIGHUP);
-    }
-    let mut signals = Signals::new(wanted)?;
+    let ending: BTreeMap<_, _> = ending().collect();
+    let mut signals = Signals::new(ending.keys())?;
     thread::Builder::new().name("signals".to_owned()).spawn(move || {
         for signal in &mut signals {
-            receive(match signal {
-                SIGHUP => Exit::HungUp,
-                SIGTERM => Exit::Terminated,
-                _ => Exit::Interrupted,
-            });
+            if let Some(exit) = ending.get(&signal) {
+                receive(*exit);
+            }
         }
     })?;
     Ok(())

@@ -1,5 +1,6 @@
-//! How every command that keeps new results begins: the disk is checked, the store is opened, and what was left open
-//! is closed. And how it ends: nothing is being sent any more, and the log is in the database.
+//! What the station's commands share: their settings, the signals that end them, how one begins that keeps new results (the disk
+//! is checked, the store is opened, and what was left open is closed), and how it ends (nothing is being sent any more, and the log
+//! is in the database).
 
 use std::mem;
 use std::path::{self, Path, PathBuf};
@@ -10,8 +11,10 @@ use std::time::Duration;
 
 use clap::Args;
 use halfrow::verdict::StoppedBy;
+use halfrow_program::signals::ending;
+use signal_hook::flag;
 
-use super::{Failure, signals};
+use super::Failure;
 use crate::console;
 use crate::disk;
 use crate::engine::Engine;
@@ -20,7 +23,7 @@ use crate::history::PlanName;
 use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::{self, Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
-use crate::settings::{PlanFile, Settings};
+use crate::settings::{PlanFile, PlantSettings, Settings};
 use crate::store::{Folder, SharedStore, Store};
 
 /// How often signals are checked for.
@@ -96,14 +99,28 @@ pub(super) fn load_without_lanes(path: &Path) -> Result<Settings, Failure> {
     Settings::load_without_lanes(&path).map_err(Failure::call)
 }
 
-/// The last signal received, which ends what is under way.
+/// `[plant]` of these settings.
+pub(super) fn plant(settings: &Settings) -> Result<&PlantSettings, Failure> {
+    settings.plant.as_ref().ok_or_else(|| Failure::call(NoPlant))
+}
+
+/// The settings do not name a plant.
+#[derive(Debug, thiserror::Error)]
+#[error("the settings name no plant; write url = \"postgres://halfrow@db.example/plant\" into [plant]")]
+pub(super) struct NoPlant;
+
+/// The last signal received, which ends what is under way, by its exit code; 0 before the first one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Signal(Arc<AtomicUsize>);
 
 impl Signal {
     /// Heeds the signals from now on.
     pub(super) fn heed() -> Result<Self, Failure> {
-        signals::last().map(Self).map_err(Failure::error)
+        let last = Arc::new(AtomicUsize::new(0));
+        for (signal, exit) in ending() {
+            flag::register_usize(signal, Arc::clone(&last), exit.code().into()).map_err(Failure::error)?;
+        }
+        Ok(Self(last))
     }
 
     /// Who wants the program to end, if anybody does.

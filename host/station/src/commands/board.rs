@@ -12,9 +12,8 @@ use halfrow::target::Target;
 use rand::{RngExt as _, rng};
 use serde_json::json;
 
-use super::beginning::{SettingsFile, Signal};
+use super::beginning::{SettingsFile, Signal, plant};
 use super::looking::{either, table, time};
-use super::plant::plant;
 use super::why::{Why, at_plant, name, person};
 use super::{Failure, print};
 use crate::console;

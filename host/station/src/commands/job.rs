@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use halfrow_program::number::counted;
 
-use super::beginning::SettingsFile;
+use super::beginning::{SettingsFile, plant};
 use super::looking::{either, table, time};
-use super::plant::plant;
 use super::why::{Why, at_plant, name, person};
 use super::{Failure, print};
 use crate::console;

@@ -10,9 +10,9 @@ use halfrow::words::plain;
 
 use super::Failure;
 use super::beginning::{Disk, Ready, Sending, SettingsFile};
-use super::publish::fetch_at_start;
+use super::fetching::fetch_at_start;
 use crate::console;
-use crate::engine::News;
+use crate::engine::{EngineEnded, News};
 use crate::exit::Exit;
 
 /// How often signals are checked for.
@@ -60,11 +60,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let _ = printer.join();
     Ok(by.map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }
-
-/// The station's engine has stopped.
-#[derive(Debug, thiserror::Error)]
-#[error("the station has stopped working, by a fault of its own that the log describes; start it again")]
-pub(super) struct EngineEnded;
 
 /// The lines of stdin, numbered, until its end.
 fn scans() -> io::Result<Receiver<(u64, String)>> {

@@ -9,8 +9,7 @@ use halfrow::words::plain;
 use jiff::Timestamp;
 use serde::Serialize;
 
-use super::beginning::load_without_lanes;
-use super::plant::plant;
+use super::beginning::{load_without_lanes, plant};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::history::runs::Filter;

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use halfrow::words::{count, plain, span};
 
 use super::beginning::SettingsFile;
-use super::{Failure, print, publish};
+use super::{Failure, fetching, print, publish};
 use crate::exit::Exit;
 use crate::plan::limits::{Limit, Measurement};
 use crate::plan::{Again, Bad, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step, StepKind};
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Command::Publish(arguments) => publish::publish(arguments),
         Command::Back(arguments) => publish::back(arguments),
         Command::Published(arguments) => publish::list(arguments),
-        Command::Fetch(settings) => publish::fetch_all(settings),
+        Command::Fetch(settings) => fetching::fetch_all(settings),
     }
 }
 

@@ -6,15 +6,15 @@ use clap::{Args, Subcommand};
 use halfrow::words::{count, verb};
 use halfrow_program::number::counted;
 
-use super::beginning::{SettingsFile, Signal};
+use super::beginning::{SettingsFile, Signal, plant};
+use super::fetching::{address, published};
 use super::kept::days_ago_ms;
-use super::publish::{address, published};
 use super::why::{Why, at_plant};
 use super::{Failure, check, print};
 use crate::check::check_plant;
 use crate::console;
 use crate::exit::Exit;
-use crate::settings::{PlantSettings, PlantSettingsError, Settings};
+use crate::settings::{PlantSettingsError, Settings};
 use crate::store::{Plant, PlantError, Snapshot};
 use crate::web::{Access, App, Server, User, Who};
 
@@ -131,16 +131,6 @@ fn serve(settings: Settings) -> Result<Exit, Failure> {
     server.close();
     Ok(halfrow::Cause::Stopped(by).into())
 }
-
-/// `[plant]` of these settings.
-pub(super) fn plant(settings: &Settings) -> Result<&PlantSettings, Failure> {
-    settings.plant.as_ref().ok_or_else(|| Failure::call(NoPlant))
-}
-
-/// The settings do not name a plant.
-#[derive(Debug, thiserror::Error)]
-#[error("the settings name no plant; write url = \"postgres://halfrow@db.example/plant\" into [plant]")]
-pub(super) struct NoPlant;
 
 /// The plant does not know a station of this name.
 #[derive(Debug, thiserror::Error)]

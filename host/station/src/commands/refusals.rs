@@ -2,14 +2,14 @@
 
 use halfrow::result::codes;
 
+use super::beginning::NoPlant;
 use super::board::{NoBoard, NoBoardKind, NoKind, OtherPlace, SharedAlready};
 use super::evidence::{EvidenceLost, EvidenceRemoved, NoSuchRun};
 use super::export::{NoFolder, RunsLost, Taken};
 use super::job::{NoJob, NoWord};
-use super::lanes::EngineEnded;
 use super::looking::NoRange;
 use super::outbox::{NoSink, NotDead, SinkInUse, SinkUnknown};
-use super::plant::{NoPlant, NoStation};
+use super::plant::NoStation;
 use super::publish::PublishError;
 use super::run::NoMock;
 use super::token::NoTokens;
@@ -17,6 +17,7 @@ use super::unit::NoSuchUnit;
 use super::user::NoUsers;
 use super::work::NoWork;
 use crate::check::{Fault, Superseded};
+use crate::engine::EngineEnded;
 
 codes::codes! {
     PublishError {

@@ -9,11 +9,10 @@ use halfrow::verdict::StoppedBy;
 
 use super::Failure;
 use super::beginning::{Disk, Ready, Sending, SettingsFile, Signal};
-use super::lanes::EngineEnded;
+use super::fetching::fetch_at_start;
 use super::notify::Notify;
-use super::publish::fetch_at_start;
 use crate::console;
-use crate::engine::Engine;
+use crate::engine::{Engine, EngineEnded};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::web::{Access, App, Server, User, Who};

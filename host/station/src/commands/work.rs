@@ -9,9 +9,8 @@ use halfrow::verdict::StoppedBy;
 use rand::{RngExt as _, rng};
 use serde_json::json;
 
-use super::beginning::{Disk, Sending, SettingsFile, Signal, recovered};
-use super::plant::plant;
-use super::publish::fetch_at_start;
+use super::beginning::{Disk, Sending, SettingsFile, Signal, plant, recovered};
+use super::fetching::fetch_at_start;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;

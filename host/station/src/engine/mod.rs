@@ -85,6 +85,11 @@ pub struct Engine {
     is_ending: AtomicBool,
 }
 
+/// The engine's thread has ended unasked.
+#[derive(Debug, thiserror::Error)]
+#[error("the station has stopped working, by a fault of its own that the log describes; start it again")]
+pub(crate) struct EngineEnded;
+
 /// What everybody may see: the lanes as they are, and who listens to changes.
 #[derive(Debug, Default)]
 struct LiveState {

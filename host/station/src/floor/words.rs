@@ -121,7 +121,7 @@ impl Word {
 
     /// Whether it is a verdict on the board in the lane, or on the one that was there last.
     #[must_use]
-    pub const fn is_verdict(self) -> bool {
+    pub(crate) const fn is_verdict(self) -> bool {
         matches!(self, Self::Pass | Self::Fail | Self::Error)
     }
 

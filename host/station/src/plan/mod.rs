@@ -8,7 +8,7 @@
 //!
 //! Whatever is wrong with a plan is found when it is loaded, before any board is touched.
 
-pub mod check_digit;
+pub(crate) mod check_digit;
 mod files;
 pub mod limits;
 pub mod mock;

@@ -62,7 +62,10 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::unsent`].
-    pub fn unsent_to<'a>(&self, sinks: impl Iterator<Item = &'a str>) -> Result<Vec<Unsent>, StoreError> {
+    pub(crate) fn unsent_to<'a>(
+        &self,
+        sinks: impl Iterator<Item = &'a str>,
+    ) -> Result<Vec<Unsent>, StoreError> {
         let mut unsent = self.unsent()?;
         for sink in sinks {
             let unentered =
