@@ -27,7 +27,13 @@ const MAX_WIDTH: (usize, usize) = (960, 480);
 const MOST_SECTIONS: usize = 400;
 /// The most windows of a frame that are shown sample by sample.
 const MOST_WINDOWS: usize = 3;
-/// The side of a sample there, in screen pixels.
+/// The width in pixels from which on an enlarged picture is smoothed: below, samples would only look blurred.
+const SMOOTHED: usize = 240;
+/// The heights of the tallest preview and map, and the width of the bars beside a map, in rem.
+const PREVIEW_REM: f64 = 30.0;
+const MAP_REM: f64 = 45.0;
+const BARS_REM: f64 = 6.25;
+/// The side of a sample in these windows, in screen pixels.
 const ZOOM: usize = 8;
 
 /// The samples that were kept of a frame, and the report on it.
@@ -172,7 +178,9 @@ fn summary(frame: &FrameReport, kept: &Evidence) -> Markup {
             (pair("Phase", frame.phase.to_string()))
             (pair("Table generation", frame.generation.to_string()))
             (pair("SHA-256 of the samples that went in", &frame.sha256))
-            (pair("SHA-256 of those that came out", sha256(kept.found.rows().map(little_endian))))
+            @if kept.missing.is_empty() {
+                (pair("SHA-256 of those that came out", sha256(kept.found.rows().map(little_endian))))
+            }
         }
     }
 }
@@ -196,7 +204,7 @@ fn details(kept: &Evidence) -> Result<Markup, EncodingError> {
     let side = pictures::side(kept.expected.samples().len());
     Ok(html! {
         h3 { "Where it differs" }
-        div.map {
+        div.map style=(no_taller(&map, MAP_REM, BARS_REM)) {
             img.samples src=(map.data_uri()) width=(map.width) height=(map.height) alt="Map of differences";
             (charts::by_row(&comparison.by_row, side))
             (charts::by_column(&comparison.by_column, side))
@@ -212,6 +220,11 @@ fn details(kept: &Evidence) -> Result<Markup, EncodingError> {
         }
         @for crop in crops { (crop) }
     })
+}
+
+/// A style that lets a picture be as wide as there is room, but at most `most` rem tall, with something `beside` it.
+fn no_taller(picture: &Picture, most: f64, beside: f64) -> String {
+    format!("max-width:min(100%,{:.1}rem)", most * picture.width as f64 / picture.height as f64 + beside)
 }
 
 /// What a colour of the map means.
@@ -245,7 +258,8 @@ fn figure(picture: &Picture, zoom: usize, caption: &str) -> Markup {
     let (width, height) = (picture.width * zoom, picture.height * zoom);
     html! {
         figure {
-            img.samples[zoom > 1] src=(picture.data_uri()) width=(width) height=(height) alt=(caption);
+            img.samples[zoom > 1 || picture.width < SMOOTHED] src=(picture.data_uri()) width=(width) height=(height)
+                style=(no_taller(picture, PREVIEW_REM, 0.0)) alt=(caption);
             figcaption { (caption) }
         }
     }

@@ -22,29 +22,32 @@ pub(super) fn frames(report: &Report) -> Markup {
         return Markup::default();
     }
     let (listed, left_out) = wording::worth_listing(report, MOST_FRAMES);
+    let any_differs = report.frames.iter().any(|frame| frame.comparison.first.is_some());
     html! {
         section {
             h2 { "Frames" }
             div.scroll { table.frames {
                 thead { tr {
                     th {} th.number { "frame" } th { "name" } th { "timing" } th.number { "rows" }
-                    th.number { "differences" } th.number { "first at" } th.number { "expected" }
-                    th.number { "found" } th.number { "largest" }
+                    th.number { "differences" }
+                    @if any_differs {
+                        th.number { "first at" } th.number { "expected" } th.number { "found" } th.number { "largest" }
+                    }
                 } }
-                tbody { @for frame in listed { (frame_row(report, frame)) } }
+                tbody { @for frame in listed { (frame_row(report, frame, any_differs)) } }
             } }
             @if left_out > 0 { p { "And " (count(left_out, "more frame")) "." } }
         }
     }
 }
 
-fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
+fn frame_row(report: &Report, frame: &FrameReport, any_differs: bool) -> Markup {
     let comparison = &frame.comparison;
     html! {
         tr {
             td { (mark(wording::frame_outcome(report, frame))) }
             td.number { (frame.number) }
-            td { (wording::frame_name(frame)) }
+            td.name { (wording::frame_name(frame)) }
             td { (frame.timing) }
             td.number { (grouped(frame.rows)) }
             td.number { (wording::differences(report, frame)) }
@@ -53,7 +56,7 @@ fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
                 td.number { (first.expected) }
                 td.number { (first.found) }
                 td.number { (comparison.largest) }
-            } @else { td {} td {} td {} td {} }
+            } @else if any_differs { td {} td {} td {} td {} }
         }
     }
 }
