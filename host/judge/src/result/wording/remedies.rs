@@ -25,11 +25,8 @@ pub fn remedy(finding: &Finding) -> Option<String> {
             "Correct what the board says of itself (CAPABILITIES in protocol/WIRE.md), or load another bitstream."
         }
         Finding::EchoWrong {} => "Check the board's packet buffers: the link carried what the board sent.",
-        Finding::TableCrcWrong {} => {
+        Finding::TableCrcWrong {} | Finding::CommitCrcWrong {} => {
             "Check the board's CRC unit, and whether the tables change on their own."
-        }
-        Finding::CommitCrcWrong {} => {
-            "Check the board's CRC unit and whether the tables change on their own."
         }
         Finding::GenerationWrong { .. } => {
             "The board uses stale tables: check when its bank switch takes effect."
