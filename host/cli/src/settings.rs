@@ -22,7 +22,7 @@ use toml::Spanned;
 
 use halfrow::call::{self, MOST_SECONDS, NoTime};
 use halfrow::files::text::{self, quoted, told};
-use halfrow::model::Short;
+use halfrow_model::Short;
 
 /// A settings file's values. Text is as on the command line and is not checked here. A relative path starts at the folder in
 /// which the program was started.

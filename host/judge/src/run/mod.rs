@@ -57,8 +57,7 @@ pub use plan::prices::{Prices, Rates, usual_capabilities};
 pub use plan::variations::{Build, Vary};
 pub use plan::within::WithinError;
 pub use plan::{
-    AtSpeed, DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing,
-    TooManyFrames,
+    AtSpeed, DECOY, FrameSource, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing, TooManyFrames,
 };
 pub use recorded::{RecordedRun, RestoreError};
 pub(crate) use threads::NoThread;

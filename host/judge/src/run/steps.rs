@@ -11,14 +11,14 @@ use super::options::RunOptions;
 use super::plan::misfit::check_fit;
 use super::plan::patterns::patterns;
 use super::plan::variations::Build;
-use super::plan::{Generation, Plan, Segment};
+use super::plan::{Plan, Segment};
 use super::sessions::Sessions;
 use crate::board::{Board, BoardError, UnknownDatapath, possible};
 use crate::link::Link;
 use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::result::{CheckName, Finding, NotExercised};
-use crate::tables::{DATAPATH, datapath_of};
+use crate::tables::{DATAPATH, Generation, datapath_of};
 use crate::target::BoardKind;
 use crate::verdict::Cause;
 

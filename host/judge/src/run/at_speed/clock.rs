@@ -11,9 +11,9 @@ use crate::board::{BoardNature, Fetched};
 use crate::result::wording::seen_of_clock;
 use crate::result::{CheckName, ClockSeen, Finding, NotExercised};
 use crate::run::findings::End;
-use crate::run::plan::Generation;
 use crate::run::sessions::second_look::LOOKS;
 use crate::run::steps::Run;
+use crate::tables::Generation;
 
 /// The shortest time from which a clock is concluded to be slow: a board may take 50 ms until a burst begins (WIRE.md).
 const TELLING: Duration = Duration::from_millis(500);

@@ -7,7 +7,7 @@ use halfrow_model::{Content, Frame, Phase, xorshift32};
 use crate::reference::correct;
 use crate::result::{Account, ContentKind, Defect, Evidence, MadeAs, Suspect};
 use crate::run::at_speed::MadeRows;
-use crate::run::plan::Generation;
+use crate::tables::Generation;
 
 /// The kinds by the lowest two bits of a row's first draw.
 const KINDS: [ContentKind; 4] =

@@ -8,8 +8,8 @@ use rand_pcg::Pcg64Mcg;
 
 use super::grids::grid_corners;
 use crate::board::Capabilities;
-use crate::run::Generation;
 use crate::run::plan::variations::Build;
+use crate::tables::Generation;
 
 /// About how many samples a corner's frame with long rows has.
 const SAMPLES: usize = 1 << 15;

@@ -9,8 +9,8 @@ use rand_pcg::Pcg64Mcg;
 
 use super::corners::{BY_TURNS, CALM, drawn_factors, drawn_kernel, fit};
 use crate::board::{Capabilities, grids};
-use crate::run::Generation;
 use crate::run::plan::variations::Build;
+use crate::tables::Generation;
 
 /// About how many samples such a frame has. One frame of each corner goes over the link.
 const SAMPLES: usize = 1 << 13;

@@ -7,8 +7,8 @@ use halfrow_model::Signer;
 
 use super::burst::BurstPlan;
 use crate::reference;
-use crate::run::Generation;
 use crate::run::threads::{self, NoThread};
+use crate::tables::Generation;
 
 /// The most frames that are predicted ahead of the board.
 pub(super) const AHEAD: usize = 64;

@@ -9,7 +9,8 @@ use super::burst::{BurstPlan, USUAL_CLOCK, datapath_of_all};
 use super::{FEW_AT_SPEED, USUAL, corners};
 use crate::board::{BoardNature, Bursts, Capabilities, Datapath, row_blanking};
 use crate::run::plan::prices::Prices;
-use crate::run::{AtSpeed, Generation, Plan};
+use crate::run::{AtSpeed, Plan};
+use crate::tables::Generation;
 use crate::tables::datapath_of;
 
 /// The payload of a request for records, and of its reply without the records.

@@ -4,7 +4,7 @@ use super::burst::BurstPlan;
 use super::predicted::signer;
 use super::watched::BurstSeen;
 use crate::result::{Defect, Suspect};
-use crate::run::plan::Generation;
+use crate::tables::Generation;
 
 /// The suspect, if the first wrong frame that has another before it has the signature that this one must have.
 pub(super) fn records_late(plan: &BurstPlan, tables: &[Generation], watched: &BurstSeen) -> Option<Suspect> {

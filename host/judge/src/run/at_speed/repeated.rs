@@ -23,9 +23,9 @@ use crate::result::{
 };
 use crate::run::findings::{During, End};
 use crate::run::frames::kept::as_found;
-use crate::run::plan::Generation;
 use crate::run::sessions::second_look::unasked;
 use crate::run::steps::Run;
+use crate::tables::Generation;
 
 /// The least differing samples with which a row can tell one defect from another.
 const TELLING: usize = 4;

@@ -8,8 +8,8 @@ use halfrow_model::Content;
 use crate::board::{BoardError, NumberedFrame, ReturnedRow, RowTraffic};
 use crate::progress::Progress;
 use crate::result::{Problem, Streamed};
-use crate::run::plan::Generation;
 use crate::run::steps::Run;
+use crate::tables::Generation;
 
 /// Rows after a wrong one, which tell a fault of this row from one of all rows. More rows say little more, and take
 /// minutes on a slow link.

@@ -6,7 +6,7 @@ use super::burst::BurstPlan;
 use super::predicted::signer;
 use super::watched::{BurstSeen, WrongFrame};
 use crate::result::{Defect, MadeWith, StaleFrames, Suspect};
-use crate::run::plan::Generation;
+use crate::tables::Generation;
 
 /// The suspect, if some number of first rows of the first wrong frame, made with the tables of the other bank, give its
 /// signature.

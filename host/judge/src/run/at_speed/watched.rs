@@ -12,8 +12,8 @@ use super::predicted::{self, AHEAD};
 use crate::board::{Board, BoardError};
 use crate::result::{BurstCount, CheckName, ClockSeen, Finding};
 use crate::run::findings::{During, End};
-use crate::run::plan::Generation;
 use crate::run::steps::Run;
+use crate::tables::Generation;
 use crate::verdict::Cause;
 
 /// What may end a burst before its last frame.

@@ -11,9 +11,9 @@ use crate::run::Findings;
 use crate::run::at_speed::known_bursts;
 use crate::run::findings::levels::{Levels, ShownBits};
 use crate::run::frames::observations::Observations;
-use crate::run::plan::Generation;
 use crate::run::rules::MOST_FILLED;
 use crate::run::steps::Run;
+use crate::tables::Generation;
 
 /// What bursts exercised of a board, and what they left.
 #[derive(Default)]

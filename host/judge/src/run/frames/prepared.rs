@@ -11,8 +11,9 @@ use crate::frames::Builtin;
 use crate::reference::correct;
 use crate::result::{little_endian, sha256};
 use crate::run::findings::levels::Levels;
-use crate::run::plan::{FrameSource, Generation, Plan, ScheduledFrame, Segment};
+use crate::run::plan::{FrameSource, Plan, ScheduledFrame, Segment};
 use crate::run::threads::{self, NoThread};
+use crate::tables::Generation;
 
 /// A frame that is ready to be sent, with the frame that must come back.
 pub(crate) struct Prepared {

@@ -4,9 +4,9 @@ use crate::board::{Bank, BoardError, ReadBack, RefusalCode, RowTiming, Table};
 use crate::diagnosis;
 use crate::result::{CheckName, Finding, Suspect};
 use crate::run::findings::{During, End};
-use crate::run::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
+use crate::run::plan::{SENSOR_BLANKING, Segment, Timing};
 use crate::run::steps::Run;
-use crate::tables::datapath_of;
+use crate::tables::{Generation, datapath_of};
 
 impl Run<'_> {
     /// Sets up the board for a segment, tables included.

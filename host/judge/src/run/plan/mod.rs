@@ -19,7 +19,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::frames::{Builtin, Scene};
 use crate::result::{SoakLength, Variation};
 use crate::run::at_speed::{WILD, drawn_factors, drawn_kernel};
-pub use crate::tables::Generation;
+use crate::tables::Generation;
 use parts::{Part, Selection};
 use variations::{Build, Vary, varied};
 

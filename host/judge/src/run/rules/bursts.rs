@@ -12,9 +12,9 @@ use halfrow_protocol::message::{
 use super::{FIRST_FACTOR, Rules, longer};
 use crate::board::{BoardError, Fetched, frame_clocks};
 use crate::result::{Answer, CheckName, Rule};
-use crate::run::Generation;
 use crate::run::at_speed::{clock_hz, content, known_bursts, signer};
 use crate::run::findings::{During, End};
+use crate::tables::Generation;
 
 /// Frames of a burst that must be right: every board has records for two.
 const FEW: u32 = 2;

@@ -8,8 +8,8 @@ use halfrow_protocol::message::{Commit, Entries, RefusalCode, Request, Span, Tab
 use super::compared::Compared;
 use super::{FIRST_FACTOR, Rules, payload};
 use crate::result::Rule;
-use crate::run::Generation;
 use crate::run::findings::End;
+use crate::tables::Generation;
 
 /// Generations that differ in every bit.
 const FIRST: u8 = 0x55;

@@ -10,9 +10,9 @@ use super::small::Small;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::reference::correct;
 use crate::result::RowPart;
-use crate::run::Generation;
 use crate::run::at_speed::MadeRows;
 use crate::run::frames::pauses::pauses;
+use crate::tables::Generation;
 
 /// How a frame must come back.
 struct Right {

@@ -12,10 +12,10 @@ use super::{FIRST_FACTOR, Rules, longer, of_rows, other_row, payload};
 use crate::board::{BoardError, CameAgain};
 use crate::reference::correct;
 use crate::result::{CheckName, Counter, Finding, Rule};
-use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::{During, End};
 use crate::run::sessions::window::window_wrong;
+use crate::tables::Generation;
 use crate::verdict::Cause;
 
 /// The generation with which rows are made.

@@ -14,10 +14,10 @@ use super::trap::NOTHING_KEPT;
 use super::{FIRST_FACTOR, Refusals, Rules, broken};
 use crate::board::{Board, BoardError, Given, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Identity, Rule};
-use crate::run::Generation;
 use crate::run::at_speed::known_bursts;
 use crate::run::findings::{During, End};
 use crate::run::frames::counters::rows_numbered;
+use crate::tables::Generation;
 use crate::verdict::Cause;
 
 /// How often a board must do what it must not, where a link or the board's supply could cause it too, though not every

@@ -6,9 +6,9 @@ use halfrow_model::{Content, Geometry, MIN_WIDTH, Phase, TableSet};
 use rand_pcg::Pcg64Mcg;
 
 use crate::board::{Capabilities, NumberedFrame};
-use crate::run::Generation;
 use crate::run::at_speed::{CALM, drawn_factors, drawn_kernel};
 use crate::run::plan::variations::Build;
+use crate::tables::Generation;
 
 /// Rows of a small frame, if the board takes that many.
 pub(super) const ROWS: usize = 4;

@@ -9,8 +9,8 @@ use halfrow_protocol::message::{Bank, Entries, NODE_BYTES, NODES, RefusalCode, R
 use super::{FIRST_FACTOR, Rules, payload};
 use crate::board::{Board, TablePort};
 use crate::result::{CheckName, Rule};
-use crate::run::Generation;
 use crate::run::findings::{During, End};
+use crate::tables::Generation;
 
 const NODE_COUNT: u16 = NODES as u16;
 

@@ -14,11 +14,11 @@ use super::{Rules, longer, rows_of_rules};
 use crate::board::Capabilities;
 use crate::reference::correct;
 use crate::result::{CheckName, Rule};
-use crate::run::Generation;
 use crate::run::at_speed::{drawn_factors, known_bursts};
 use crate::run::findings::{During, End};
 use crate::run::plan::parts::of_height;
 use crate::run::plan::variations::Build;
+use crate::tables::Generation;
 
 /// The reply to TRAP when no row was kept.
 pub(super) const NOTHING_KEPT: [u8; 1] = [0];

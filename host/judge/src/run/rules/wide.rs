@@ -8,10 +8,10 @@ use super::Rules;
 use super::compared::Compared;
 use crate::board::RowTiming;
 use crate::result::{CheckName, Rule};
-use crate::run::Generation;
 use crate::run::at_speed::drawn_factors;
 use crate::run::findings::{During, End};
 use crate::run::plan::variations::Build;
+use crate::tables::Generation;
 
 /// The generation with which they are made.
 const GENERATION: u8 = 0x69;

@@ -4,7 +4,7 @@ use crate::result::{Finding, Repetition};
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::BurstSeen;
 use crate::run::findings::End;
-use crate::run::plan::Generation;
+use crate::tables::Generation;
 
 /// A burst that is over or broke off.
 pub(super) struct Played {
