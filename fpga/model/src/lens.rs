@@ -121,6 +121,18 @@ impl Equidistant {
         Self::checked(radius_px / FRAC_PI_2, radius_px)
     }
 
+    /// The lens of focal length `focal_length_px` whose R is `radius_px`, as [`Self::focal_length`] and [`Self::radius`] say them.
+    ///
+    /// # Errors
+    /// [`LensError::Radius`] when R is outside [`MIN_RADIUS`] to [`MAX_RADIUS`], or the radius of 90° is no finite number above
+    /// zero.
+    pub fn from_both(focal_length_px: f64, radius_px: f64) -> Result<Self, LensError> {
+        if !is_positive(focal_length_px) {
+            return Err(LensError::Radius(focal_length_px * FRAC_PI_2));
+        }
+        Self::checked(focal_length_px, radius_px)
+    }
+
     /// The lens of focal length `focal_mm` on pixels of `pixel_um`, with an image circle `field_of_view_deg` across.
     ///
     /// R becomes the radius of the image circle, f · fov/2. Eq. 9 takes R as half the size of the whole image of 180°, so 180

@@ -29,6 +29,7 @@ fn a_wider_field_of_view_widens_the_circle_and_keeps_the_focal_length() {
     let lens = Equidistant::from_focal_length(1.0, 10.0, 270.0).unwrap();
     assert_close(lens.focal_length(), 100.0);
     assert_close(lens.radius(), 75.0 * PI);
+    assert_eq!(Equidistant::from_both(lens.focal_length(), lens.radius()), Ok(lens));
 }
 
 #[test]
@@ -80,8 +81,12 @@ fn straight_back_is_imaged_on_the_rim() {
 fn figures_of_no_lens_are_refused_by_name() {
     for radius in [0.0, -1.0, 0.5, 2e9, f64::INFINITY] {
         assert_eq!(Equidistant::from_radius(radius), Err(LensError::Radius(radius)));
+        assert_eq!(Equidistant::from_both(40.0, radius), Err(LensError::Radius(radius)));
     }
     assert!(matches!(Equidistant::from_radius(f64::NAN), Err(LensError::Radius(_))));
+    for focal_length in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(Equidistant::from_both(focal_length, 40.0), Err(LensError::Radius(_))));
+    }
     let new = Equidistant::from_focal_length;
     assert_eq!(new(0.0, 2.2, 180.0), Err(LensError::FocalLength(0.0)));
     assert_eq!(new(1.55, -2.2, 180.0), Err(LensError::PixelPitch(-2.2)));

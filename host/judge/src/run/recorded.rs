@@ -29,6 +29,8 @@ pub struct RecordedRun {
     tables_source: String,
     rows_outside_circle: Option<usize>,
     lens_radius: f64,
+    /// A recording without this key is of a lens that images 90 degrees at `lens_radius`.
+    lens_focal_length: Option<f64>,
     centre_y: Option<f64>,
     phase: String,
     frames: Vec<String>,
@@ -117,6 +119,7 @@ impl RecordedRun {
             tables_source: plan.tables_source.clone(),
             rows_outside_circle: plan.rows_outside_circle,
             lens_radius: plan.lens.radius(),
+            lens_focal_length: Some(plan.lens.focal_length()),
             centre_y: plan.centre_y,
             phase: plan.phase.to_string(),
             frames: plan.frames.iter().map(FrameSource::name).collect(),
@@ -150,7 +153,7 @@ impl RecordedRun {
         let plan = Plan {
             tables_source: run.tables_source.clone(),
             rows_outside_circle: run.rows_outside_circle,
-            lens: Equidistant::from_radius(run.lens_radius).map_err(value::<LensError>)?,
+            lens: run.lens().map_err(value)?,
             centre_y: run.centre_y,
             phase,
             repeat: run.repeat,
@@ -176,6 +179,13 @@ impl RecordedRun {
             ..RunOptions::default()
         };
         Ok((plan, options))
+    }
+
+    fn lens(&self) -> Result<Equidistant, LensError> {
+        match self.lens_focal_length {
+            Some(focal_length) => Equidistant::from_both(focal_length, self.lens_radius),
+            None => Equidistant::from_radius(self.lens_radius),
+        }
     }
 
     fn frames(
