@@ -9,6 +9,7 @@
 mod error;
 mod view;
 
+use std::f64::consts::FRAC_PI_2;
 use std::ffi::OsStr;
 use std::path::Path;
 
@@ -93,7 +94,8 @@ pub fn outside_circle(tables: &TableSet) -> &'static str {
 pub struct Optics {
     /// Both of them, and where the axis is.
     pub camera: Camera,
-    /// The equidistant lens of the same R, through which built-in frames are rendered.
+    /// The equidistant lens through which built-in frames are rendered: that of `camera`, or one that images 90 degrees where
+    /// that one does. If it does not reach so far, they have the edge of the image circle in common.
     pub lens: Equidistant,
     /// The row of the axis; none for the middle.
     pub centre_y: Option<f64>,
@@ -113,10 +115,11 @@ impl Optics {
     }
 
     /// The calibrated lens of `camera`, of the kind `model`, as `file` describes it. An error when built-in frames cannot be
-    /// rendered through a lens of its radius.
+    /// rendered through a lens of its size.
     fn calibrated(camera: Camera, model: LensModel, file: Input, by: TablesBy) -> Result<Self, LensError> {
+        let (angle, radius) = hemisphere(&camera);
         Ok(Self {
-            lens: Equidistant::from_radius(camera.radius())?,
+            lens: Equidistant::from_radius(radius * (FRAC_PI_2 / angle))?,
             centre_y: Some(camera.centre().1),
             camera,
             by,
@@ -209,6 +212,13 @@ impl Optics {
         let of_angle = if degrees == 90.0 { String::new() } else { format!(" at {degrees} degrees") };
         format!("{}, R = {:.3} pixels{of_angle}", self.name, self.camera.radius())
     }
+}
+
+/// 90 degrees, in radians, and where the lens of `camera` images them, in pixels; of a lens that does not reach so far, the edge
+/// of the image circle.
+fn hemisphere(camera: &Camera) -> (f64, f64) {
+    let reached = camera.lens().column(FRAC_PI_2).map(|radius| (FRAC_PI_2, radius));
+    reached.unwrap_or((camera.field_of_view() / 2.0, camera.radius()))
 }
 
 /// A kernel by its name, or from a kernel file.

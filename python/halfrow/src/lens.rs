@@ -94,8 +94,8 @@ impl Lens {
         self.optics.camera.lens().column(degrees.to_radians())
     }
 
-    /// The built-in frame `name`, one of `halfrow.BUILTIN_FRAMES`, as seen through an equidistant lens of this R: uint16 of shape
-    /// (height, width).
+    /// The built-in frame `name`, one of `halfrow.BUILTIN_FRAMES`, as seen through an equidistant lens that images 90 degrees where
+    /// this one does: uint16 of shape (height, width).
     ///
     /// `phase` is grbg, rggb, bggr or gbrg; `seed` is the seed of noise.
     #[pyo3(signature = (name, *, phase = "grbg", seed = 1))]

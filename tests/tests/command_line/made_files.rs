@@ -194,3 +194,23 @@ fn a_lens_that_cannot_be_is_refused() {
     refused(&folder, &["tables", "--bits", "9", "-o", "x.json"], "8, 10 or 12");
     refused(&folder, &["tables", "--phase", "rgbg", "-o", "x.json"], "rgbg");
 }
+
+/// The angle across the circle is how far a table reaches, and no other lens. By hand: f = 200/π pixels, so 90 degrees are imaged
+/// at 100 pixels.
+#[test]
+fn the_street_is_seen_through_the_lens_whatever_its_field_of_view() {
+    let folder = Folder::new();
+    let f = 200.0 / std::f64::consts::PI;
+    folder.write("equidistant.json", format!(r#"{{"K": [[{f}, 0, 95.5], [0, {f}, 31.5], [0, 0, 1]], "D": [0, 0, 0, 0], "width": 192, "height": 64}}"#));
+    let street = |lens: &[&str]| {
+        let call = ["frames", "--only", "street", "--overwrite", "-o", "."];
+        let ended = folder.halfrow(call.iter().chain(lens).copied());
+        assert_eq!(ended.code, Some(0), "{lens:?}: {}", ended.stderr);
+        folder.read("street.pgm")
+    };
+    let expected = street(&["--radius", "100", "--width", "192", "--height", "64"]);
+    for field in ["120", "180", "220"] {
+        let found = street(&["--lens", "equidistant.json", "--field-of-view", field]);
+        assert!(found == expected, "{field} degrees");
+    }
+}

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod refusals;
+mod seen;
 mod sizes;
 
 use halfrow::lenses::{LensFile, LensModel};
