@@ -61,6 +61,12 @@ pub(crate) enum CallError {
         "--entries and --nodes-every are for the grid of --projection exact; leave them out, or give --projection exact too"
     )]
     EntriesOfRows,
+    /// An angle across the image circle was given where nothing depends on it.
+    #[error(
+        "--field-of-view does nothing here: without a lens file it changes how far tables of one factor per row reach, and \
+         nothing of {what}; leave it out"
+    )]
+    FieldOfViewVoid { what: &'static str },
     /// The lens file does not give the size of its pictures.
     #[error("the lens file {} does not say how large its pictures are; give --width and --height", path.display())]
     LensSizeMissing { path: PathBuf },

@@ -200,17 +200,27 @@ impl Optics {
     /// A sentence on where `tables`, made for this lens, come from.
     #[must_use]
     pub fn source_of(&self, tables: &TableSet) -> String {
-        format!("{} ({})", self.source(), self.by.how(tables.shape()))
+        let source = match tables.shape() {
+            None => self.source(),
+            // It goes to 90 degrees for every field of view.
+            Some(_) => self.source_with(hemisphere(&self.camera)),
+        };
+        format!("{source} ({})", self.by.how(tables.shape()))
     }
 
     /// A sentence on what the lens is.
     #[must_use]
     pub fn source(&self) -> String {
+        self.source_with((self.camera.field_of_view() / 2.0, self.camera.radius()))
+    }
+
+    /// The same, with R at this angle, in radians.
+    fn source_with(&self, (angle, radius): (f64, f64)) -> String {
         // Without what the conversion to radians and back added.
-        let degrees = (self.camera.field_of_view().to_degrees() / 2.0 * 1e9).round() / 1e9;
+        let degrees = (angle.to_degrees() * 1e9).round() / 1e9;
         // 90 degrees is the angle that R means in Eq. 9, and on every page.
         let of_angle = if degrees == 90.0 { String::new() } else { format!(" at {degrees} degrees") };
-        format!("{}, R = {:.3} pixels{of_angle}", self.name, self.camera.radius())
+        format!("{}, R = {radius:.3} pixels{of_angle}", self.name)
     }
 }
 

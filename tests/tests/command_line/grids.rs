@@ -283,15 +283,41 @@ fn the_nodes_of_a_grid_are_as_far_apart_as_a_board_takes_them() {
     }
 }
 
-/// A grid ends where 90 degrees are, at |y| = π/2 · 0.15/0.0022 = 107.1 rows from the middle of 320, so 106 rows are outside.
+/// A grid ends where 90 degrees are, at |y| = π/2 · 68.181 = 107.1 rows from the middle of 320, so 106 rows are outside.
 #[test]
 fn a_grid_has_the_circle_of_180_degrees_whatever_the_field_of_view() {
     let folder = Folder::new();
+    folder.write(
+        "lens.json",
+        r#"{"K": [[68.181, 0, 159.5], [0, 68.181, 159.5], [0, 0, 1]], "D": [0, 0, 0, 0], "width": 320, "height": 320}"#,
+    );
     for field in ["60", "180", "220"] {
-        let size = ["--width", "320", "--height", "320"];
-        let lens = ["--focal-length", "0.15", "--pixel-pitch", "2.2", "--field-of-view", field];
+        let lens = ["--lens", "lens.json", "--field-of-view", field];
         let made = ["tables", "--json", "--projection", "exact", "--overwrite", "-o", "x.json"];
-        let call: Vec<_> = made.into_iter().chain(size).chain(lens).collect();
-        assert_eq!(folder.halfrow(call).json()["rows_outside_circle"], 106, "{field}");
+        let said = folder.halfrow(made.into_iter().chain(lens)).json();
+        assert_eq!(said["rows_outside_circle"], 106, "{field}");
+        let source = said["source"].as_str().unwrap();
+        assert!(source.contains(" lens lens.json, R = 107.098 pixels (exact projection"), "{source}");
+    }
+}
+
+/// Of a lens without a file it changes R of Eq. 9 alone, which neither a grid nor a frame has.
+#[test]
+fn a_field_of_view_is_refused_where_it_does_nothing() {
+    let folder = Folder::new();
+    let size = ["--width", "192", "--height", "48"];
+    for lens in [["--focal-length", "0.15"], ["--pixel-pitch", "3"]] {
+        let with = |call: &[&'static str]| [call, &size, &lens, &["--field-of-view", "120"]].concat();
+        for call in [
+            &["tables", "-o", "x.json"][..],
+            &["verify", "-q"],
+            &["correct", "builtin:street", "--model", "-o", "x.pgm"],
+        ] {
+            let call = with(&[call, &["--projection", "exact"]].concat());
+            refused(&folder, &call, "--field-of-view does nothing");
+        }
+        refused(&folder, &with(&["frames", "-o", "frames"]), "--field-of-view does nothing");
+        let told = folder.halfrow(with(&["lens", "--projection", "exact"]));
+        assert_eq!(told.code, Some(0), "the circle of Eq. 9 and of fitted rows is shown: {}", told.stderr);
     }
 }

@@ -204,6 +204,14 @@ impl LensArguments {
         }
     }
 
+    /// Refuses an angle across the image circle for `what`, in which it only limits how far the lens of a file must reach.
+    pub(crate) fn refuse_field_of_view(&self, what: &'static str) -> Result<(), Failure> {
+        match self.field_of_view {
+            Some(_) if self.file().is_none() => Err(Failure::call(CallError::FieldOfViewVoid { what })),
+            _ => Ok(()),
+        }
+    }
+
     fn pixel_pitch(&self) -> f64 {
         self.pixel_pitch.unwrap_or(DEFAULT_PITCH)
     }
@@ -270,6 +278,9 @@ pub(crate) fn choose(
     let (input, file) = named.map(|NamedTables { input, file }| (input, file)).unzip();
     let path = input.as_ref().map(|input| input.path.as_path());
     let optics = lens.optics()?;
+    if let TablesBy::Exact { .. } = optics.by {
+        lens.refuse_field_of_view("a grid")?;
+    }
     optics::choose(path.zip(file), optics, kernel_name).map_err(|error| match error {
         OpticsError::Kernel { .. } | OpticsError::File(_) => Failure::from(error).in_value_of("--kernel"),
         error => error.into(),

@@ -42,6 +42,7 @@ codes::codes! {
         RadiusTwice => "radius-given-twice",
         RowsOfGrid => "rows-of-grid",
         EntriesOfRows => "entries-without-grid",
+        FieldOfViewVoid [what] => "field-of-view-without-effect",
         LensSizeMissing [path] => "lens-size-missing",
         OtherFormat [path] => "frame-format-contradicted",
         OneFile [path, frames, option] => "one-file-for-several-frames",

@@ -39,6 +39,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     arguments.given.refuse_void(Decider::MadeFrames, &[]).map_err(Failure::call)?;
+    arguments.lens.refuse_field_of_view("a built-in frame")?;
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let is_wanted = |frame: &Builtin| arguments.only.is_empty() || arguments.only.contains(frame);
     let chosen: Vec<_> = Builtin::ALL.into_iter().filter(is_wanted).collect();
