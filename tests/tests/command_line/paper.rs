@@ -154,6 +154,16 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
     refused(&folder, &["paper", "-o", "out", "fig4", "--lines", "lines.json"], "--photograph");
 }
 
+/// Nothing would be farthest from straight in any projection.
+#[test]
+fn a_photograph_without_a_line_is_shown_by_none() {
+    let folder = Folder::new();
+    folder.write("photograph.png", "is read behind the lines");
+    folder.write("lines.json", file(320, &[]));
+    let call = ["paper", "fig4", "--photograph", "photograph.png", "--lines", "lines.json", "-o", "out"];
+    refused(&folder, &call, "lines.json marks no line; mark at least one");
+}
+
 #[test]
 fn the_delay_is_measured_and_a_board_that_takes_longer_fails() {
     let folder = Folder::new();

@@ -103,6 +103,7 @@ codes::codes! {
         Io [path] => "lines-file-unreadable",
         Content [path] => "lines-file-malformed",
         Radius [path, radius] => "lines-file-without-circle",
+        NoLine [path] => "lines-file-without-line",
         Line [path, number] => "scene-line-not-shown",
     }
     PhotographError {

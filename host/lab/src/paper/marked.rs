@@ -68,6 +68,12 @@ pub enum MarkedError {
         /// The radius.
         radius: f64,
     },
+    /// The file of lines has none, so that there is nothing to keep straight.
+    #[error("{} marks no line; mark at least one straight line of the photograph", path.display())]
+    NoLine {
+        /// The file.
+        path: PathBuf,
+    },
     /// A marked line is too short, or ends outside of the image circle.
     #[error(
         "entry {number} of `lines` in {} is too short, or lies beyond what a projection shows; mark it inside of the image circle",
@@ -124,6 +130,9 @@ impl MarkedPhotograph {
         let Circle { centre: [column, row], radius } = content.circle;
         let lens = Equidistant::from_radius(RADIUS).ok().filter(|_| radius >= 1.0);
         let lens = lens.ok_or_else(|| MarkedError::Radius { path: path(), radius })?;
+        if content.lines.is_empty() {
+            return Err(MarkedError::NoLine { path: path() });
+        }
         let ray = |[x, y]: [f64; 2]| {
             let (right, down) = ((x - column) / radius, (y - row) / radius);
             let is_inside = right.hypot(down) <= 1.0;
