@@ -201,6 +201,8 @@ fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
         let call = ["paper", "fig5", "resources", "-o", "new", "--synthesis", "bad.json"];
         refused(&folder, &call, "make it anew");
     }
+    let named = ["paper", "fig5", "resources", "-o", "new", "--synthesis", "typo.json"];
+    refused(&folder, &named, "typo.json is no synthesis report that can be used");
     assert!(!folder.path().join("new").exists(), "it was noticed once the folder was made");
 }
 

@@ -186,10 +186,10 @@ impl Arguments {
     }
 
     fn synthesis(&self, items: &[Item]) -> Result<Synthesis, PaperError> {
-        if items.contains(&Item::Resources) {
-            Synthesis::read(&self.synthesis)
-        } else {
-            Ok(Synthesis::none(&self.synthesis))
+        match items.contains(&Item::Resources) {
+            true if self.given.is_flag("synthesis") => Synthesis::read(&self.synthesis),
+            true => Synthesis::read_if_there(&self.synthesis),
+            false => Ok(Synthesis::none(&self.synthesis)),
         }
     }
 

@@ -49,22 +49,29 @@ pub struct Synthesis {
 }
 
 impl Synthesis {
+    /// The report in the file `path`.
+    ///
+    /// # Errors
+    /// [`PaperError::Synthesis`] when it cannot be used.
+    pub fn read(path: &Path) -> Result<Self, PaperError> {
+        let wrong = |source| PaperError::Synthesis { path: path.to_owned(), source };
+        let text = text::read(path, text::MAX_BYTES).map_err(wrong)?;
+        // An `Option` would take `null` for a report that is not there.
+        let report = serde_json::from_str::<Report>(&text).map_err(|source| wrong(source.into()))?;
+        Ok(Self { path: path.to_owned(), report: Some(report) })
+    }
+
     /// The report in the file `path`, which need not be there.
     ///
     /// # Errors
     /// [`PaperError::Synthesis`] when it is there and cannot be used.
-    pub fn read(path: &Path) -> Result<Self, PaperError> {
-        let wrong = |source| PaperError::Synthesis { path: path.to_owned(), source };
-        let report = match text::read(path, text::MAX_BYTES) {
-            Ok(text) => {
-                // An `Option` would take `null` for a report that is not there.
-                let report = serde_json::from_str::<Report>(&text);
-                Some(report.map_err(|source| wrong(source.into()))?)
+    pub fn read_if_there(path: &Path) -> Result<Self, PaperError> {
+        match Self::read(path) {
+            Err(PaperError::Synthesis { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
+                Ok(Self::none(path))
             }
-            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-            Err(source) => return Err(wrong(source)),
-        };
-        Ok(Self { path: path.to_owned(), report })
+            read => read,
+        }
     }
 
     /// No report at `path`, for items that need none.
