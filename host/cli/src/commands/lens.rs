@@ -74,10 +74,8 @@ struct TableResiduals {
 /// What the command reports.
 struct Figures<'a> {
     optics: &'a Optics,
-    /// Eq. 9, fitted rows, and the grid, if one has few enough entries.
+    /// Eq. 9, fitted rows, and the grid.
     all: Vec<TableResiduals>,
-    /// Why there is no grid, if so.
-    no_grid: Option<OpticsError>,
     /// Why a board would not take the requested tables, if so.
     illegal: Option<String>,
 }
@@ -88,15 +86,9 @@ impl<'a> Figures<'a> {
             by @ TablesBy::Exact { .. } => by,
             _ => TablesBy::Exact { entries: TablesBy::LEAST_ENTRIES, k: None },
         };
-        let (mut all, mut no_grid, mut illegal) = (Vec::new(), None, None);
+        let (mut all, mut illegal) = (Vec::new(), None);
         for by in [TablesBy::Equation9, TablesBy::Fitting, exact] {
-            let tables = match optics.tables_by(by) {
-                Err(error @ OpticsError::Room(_)) if by != optics.by => {
-                    no_grid = Some(error);
-                    continue;
-                }
-                tables => tables?,
-            };
+            let tables = optics.tables_by(by)?;
             if by == optics.by {
                 optics.check_circle(&tables)?;
                 illegal = tables.check_ring(LONGEST_RING).err().map(|error| match optics.file {
@@ -107,7 +99,7 @@ impl<'a> Figures<'a> {
             let residuals = Residuals::of(&optics.camera, &tables);
             all.push(TableResiduals { by, shape: tables.shape(), residuals });
         }
-        Ok(Self { optics, all, no_grid, illegal })
+        Ok(Self { optics, all, illegal })
     }
 
     /// The errors that the requested tables leave.
@@ -138,7 +130,6 @@ impl<'a> Figures<'a> {
             ),
         ];
         lines.extend(self.errors());
-        lines.extend(self.no_grid.as_ref().map(|error| format!("there is no exact projection: {error}")));
         lines.extend(self.illegal.as_ref().map(|error| format!("no board takes these tables: {error}")));
         lines.join("\n")
     }
