@@ -13,6 +13,7 @@ const HEIGHT: u16 = 257;
 const BITS: u16 = 258;
 const COMPRESSION: u16 = 259;
 const PHOTOMETRIC: u16 = 262;
+const FILL_ORDER: u16 = 266;
 const CHANNELS: u16 = 277;
 const PLANAR: u16 = 284;
 const TILE_WIDTH: u16 = 322;
@@ -90,6 +91,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<PictureTags, DecodeError> {
     size::checked(one(TILE_WIDTH, 0).into(), one(TILE_HEIGHT, 0).into())?;
     let (colour, channels, bits) = (one(PHOTOMETRIC, 1), one(CHANNELS, 1), one(BITS, 1));
     check_coding(one(COMPRESSION, 1))?;
+    check_fill_order(one(FILL_ORDER, 1))?;
     let array = tags.filter_array()?;
     if array.is_some() {
         tags.check_raw(&Bytes::new(bytes), width, height)?;
@@ -129,6 +131,17 @@ fn check_coding(compression: u32) -> Result<(), DecodeError> {
         }
     };
     Err(DecodeError::Unsupported { what, remedy })
+}
+
+/// Refuses bytes whose bits the decoder would read in the wrong order, without a word.
+fn check_fill_order(order: u32) -> Result<(), DecodeError> {
+    match order {
+        1 => Ok(()),
+        _ => {
+            let what = format!("a TIFF whose bits are in another order (FillOrder {order})");
+            Err(DecodeError::Unsupported { what, remedy: "save it with FillOrder 1" })
+        }
+    }
 }
 
 /// A tag of the first directory, its value as a number (or four bytes as one), and the offset of its entry.
@@ -176,7 +189,7 @@ impl Tags {
 
     fn wanted(tag: u16) -> bool {
         let sizes = [WIDTH, HEIGHT, TILE_WIDTH, TILE_HEIGHT];
-        let codings = [BITS, COMPRESSION, PHOTOMETRIC, CHANNELS, PLANAR, dng::WHITE];
+        let codings = [BITS, COMPRESSION, PHOTOMETRIC, FILL_ORDER, CHANNELS, PLANAR, dng::WHITE];
         sizes.contains(&tag) || codings.contains(&tag)
     }
 

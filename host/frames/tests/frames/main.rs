@@ -7,6 +7,7 @@ mod builtin;
 mod dng;
 mod files;
 mod fuzz;
+mod misread;
 mod photographs;
 mod pictures;
 mod preview;

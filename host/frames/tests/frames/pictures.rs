@@ -53,7 +53,7 @@ fn hex(text: &str) -> Vec<u8> {
     digits.chunks(2).map(|pair| u8::try_from(pair[0] * 16 + pair[1]).unwrap()).collect()
 }
 
-fn options(depth: BitDepth) -> ReadOptions {
+pub(super) fn options(depth: BitDepth) -> ReadOptions {
     ReadOptions { depth, phase: Phase::Grbg, ..ReadOptions::default() }
 }
 
@@ -190,7 +190,7 @@ fn what_is_written_is_read_back_exactly() {
 }
 
 /// A TIFF of 4 x 2 with this orientation, RGB or RGBA with 8 or 16 bits, every pixel grey: 1 to 8, times 257 in 16 bits.
-fn oriented(orientation: u16, channels: u16, bits: u16) -> Vec<u8> {
+pub(super) fn oriented(orientation: u16, channels: u16, bits: u16) -> Vec<u8> {
     let short = |tag: u16, value: u16| [tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).concat();
     let long = |tag: u16, value: u32| {
         [[tag, 4, 1, 0].map(u16::to_le_bytes).concat(), value.to_le_bytes().to_vec()].concat()
