@@ -169,6 +169,21 @@ pub enum DecodeError {
     /// The PNG cannot be decoded: its file is damaged.
     #[error("the PNG is damaged: {}; copy or export it again", png_damage(.0))]
     Png(png::DecodingError),
+    /// The PNG is damaged: a pixel has a colour that its palette does not have.
+    #[error(
+        "the PNG is damaged: the pixel at row {row}, column {column} has colour {index}, and its palette has {colours} \
+         colours, from 0; copy or export it again"
+    )]
+    PngPalette {
+        /// Its row, as stored in the file.
+        row: usize,
+        /// Its column, as stored in the file.
+        column: usize,
+        /// The colour's place in the palette.
+        index: usize,
+        /// Colours of the palette.
+        colours: usize,
+    },
     /// The TIFF's directory is cut off or malformed.
     #[error("the TIFF's directory is damaged at byte {offset}; copy or export the file again")]
     TiffDirectory {
@@ -246,6 +261,9 @@ fn png_damage(error: &png::DecodingError) -> String {
     }
     let text = error.to_string();
     let text = text.trim_end_matches('.');
+    if text.starts_with("Corrupt deflate stream") {
+        return "its packed samples are corrupt, or not those of their checksum".to_owned();
+    }
     let chunk = text.split_once("ChunkType {").and_then(|(before, rest)| {
         let (inside, after) = rest.split_once('}')?;
         let (_, name) = inside.split_once("type: ")?;

@@ -4,7 +4,7 @@ use std::io::{Cursor, Write};
 use std::ops::RangeInclusive;
 
 use halfrow_model::{BitDepth, Frame};
-use png::{ColorType, Decoder, DecodingError, Encoder, EncodingError, Info, Transformations};
+use png::{ColorType, DecodeOptions, Decoder, DecodingError, Encoder, EncodingError, Info, OutputInfo};
 
 use super::mosaic::Picture;
 use super::preview::RgbImage;
@@ -101,10 +101,11 @@ pub(super) fn picture(bytes: &[u8], size: PictureSize) -> Result<Picture, Decode
 
 fn read(input: &mut Cursor<&[u8]>, size: PictureSize) -> Result<Picture, DecodeError> {
     let compressed = input.get_ref().len();
-    let mut decoder = Decoder::new(input);
-    decoder.set_transformations(Transformations::EXPAND);
-    decoder.set_ignore_text_chunk(true);
-    decoder.set_ignore_iccp_chunk(true);
+    let mut options = DecodeOptions::default();
+    options.set_ignore_adler32(false);
+    options.set_ignore_text_chunk(true);
+    options.set_ignore_iccp_chunk(true);
+    let mut decoder = Decoder::new_with_options(input, options);
     check(decoder.read_header_info().map_err(DecodeError::Png)?)?;
     let mut reader = decoder.read_info().map_err(DecodeError::Png)?;
     if reader.info().is_animated() {
@@ -119,7 +120,13 @@ fn read(input: &mut Cursor<&[u8]>, size: PictureSize) -> Result<Picture, DecodeE
     let mut bytes = vec![0; length];
     let output = reader.next_frame(&mut bytes).map_err(DecodeError::Png)?;
     reader.finish().map_err(DecodeError::Png)?;
-    let (channels, full, samples) = widened(&bytes, output.bit_depth, output.color_type.samples());
+    let (channels, full, samples) = match output.color_type {
+        ColorType::Indexed => {
+            let palette = reader.info().palette.as_deref().unwrap_or_default();
+            (3, u8::MAX.into(), coloured(&bytes, &output, palette)?)
+        }
+        colour => widened(&bytes, output.bit_depth, colour.samples()),
+    };
     drop(bytes);
     let width = usize::try_from(output.width).unwrap_or(usize::MAX);
     // The EXIF block may come after the picture.
@@ -137,6 +144,27 @@ fn widened(bytes: &[u8], depth: png::BitDepth, channels: usize) -> (usize, u16, 
         samples.extend(colours.map(|sample| sample.iter().fold(0, |high, &low| high << 8 | u16::from(low))));
     }
     (kept, if width == 2 { u16::MAX } else { u8::MAX.into() }, samples)
+}
+
+/// Red, green and blue of the pixels in `bytes`, each the place of a colour in `palette`. The decoder would make black of a
+/// place that is not there.
+///
+/// # Errors
+/// [`DecodeError::PngPalette`]
+fn coloured(bytes: &[u8], output: &OutputInfo, palette: &[u8]) -> Result<Vec<u16>, DecodeError> {
+    let (width, bits) = (usize::try_from(output.width).unwrap_or(usize::MAX), output.bit_depth as usize);
+    let mut samples = Vec::with_capacity(bytes.len() * 8 / bits * 3);
+    for (row, line) in bytes.chunks_exact(output.line_size).enumerate() {
+        for column in 0..width {
+            let (byte, bit) = (column * bits / 8, column * bits % 8);
+            let index = usize::from(line[byte] << bit >> (8 - bits));
+            let colour = palette.get(3 * index..3 * index + 3);
+            let colours = palette.len() / 3;
+            let colour = colour.ok_or(DecodeError::PngPalette { row, column, index, colours })?;
+            samples.extend(colour.iter().map(|&sample| u16::from(sample)));
+        }
+    }
+    Ok(samples)
 }
 
 /// Refuses a picture in colour that cannot have the `size` asked for, however it is turned.

@@ -41,6 +41,7 @@ codes! {
         AboveMaxval [row, column, value, maxval] => "sample-above-maxval",
         Photograph [format, reason] => "photograph-damaged",
         Png => "png-damaged",
+        PngPalette [row, column, index, colours] => "png-palette-exceeded",
         TiffDirectory [offset] => "tiff-directory-wrong",
         Tiff => "tiff-damaged",
         OtherPhase [found, asked] => "frame-of-other-phase",
