@@ -44,9 +44,12 @@ impl PictureSize {
 /// How a picture was brought to the size of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fitting {
-    found: (usize, usize),
-    cropped: (usize, usize),
-    wanted: (usize, usize),
+    /// Columns and rows of the picture as it is seen.
+    pub found: (usize, usize),
+    /// Columns and rows of the part about its centre that was kept.
+    pub cropped: (usize, usize),
+    /// Columns and rows of the frame.
+    pub wanted: (usize, usize),
 }
 
 impl Fitting {

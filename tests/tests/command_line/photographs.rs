@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use halfrow::frames::read_rgb;
 use halfrow_tests::program::{Folder, finish};
+use serde_json::json;
 
 use crate::{refused, small};
 
@@ -73,6 +74,23 @@ fn pictures_are_fitted_and_each_is_told_in_a_line() {
     assert_eq!(folder.names("out"), ["flat.pgm", "lossless.pgm", "small.pgm", "turned6.pgm"]);
     let quiet = folder.halfrow(small("correct", &["-q", "turned6.jpg", "--model", "-o", "q.pgm", "--fit"]));
     assert_eq!((quiet.code, quiet.stderr.as_str()), (Some(0), ""));
+}
+
+/// For a program that lets photographs be corrected: how much of each is left.
+#[test]
+fn the_document_says_how_each_picture_was_fitted() {
+    let folder = folder();
+    let of_size = |width: u32, height: u32| json!({ "width": width, "height": height });
+    let turned = json!({ "found": of_size(48, 72), "cropped": of_size(48, 6), "wanted": of_size(128, 16) });
+    for (place, whom) in [("model", &["--model"][..]), ("board", &["--board", "mock"])] {
+        let call = ["--json", "-q", "turned6.jpg", "flat.bmp", "builtin:grey", "--fit", "-o", place];
+        let said = folder.halfrow(small("correct", &call).into_iter().chain(whom.iter().copied())).json();
+        assert_eq!(said["fitted"], json!([turned, null, null]), "{place}");
+        let call = small("correct", &["--json", "-q", "/dev/stdin", "--fit", "--overwrite", "-o", "out.pgm"]);
+        let line = "cat turned6.jpg | \"$@\"";
+        let piped = finish(&mut folder.by_shell(line, call.into_iter().chain(whom.iter().copied())));
+        assert_eq!(piped.json()["fitted"], json!([turned]), "{place}");
+    }
 }
 
 #[test]

@@ -6,11 +6,12 @@ mod places;
 
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use clap::Args;
 use halfrow_model::Frame;
 use halfrow_program::files::prepare_files;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Context, Failure};
 use crate::arguments::board::{self, BoardArguments, Replays};
@@ -91,6 +92,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let geometry = *chosen.tables.geometry();
     let job = Job {
         arguments,
+        fittings: inputs.iter().map(|_| OnceLock::new()).collect(),
         inputs,
         how: arguments.input.read_options(&geometry, arguments.lens.phase, settings),
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
@@ -108,7 +110,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         job.by_board(&places, context, watched.as_ref()).map(Some)
     };
     watched.done();
-    report(context.json, board?, &places, &job.chosen.source)
+    job.report(context.json, board?, &places)
 }
 
 /// How a frame is shown.
@@ -123,6 +125,8 @@ struct Look {
 struct Job<'a> {
     arguments: &'a Arguments,
     inputs: Vec<FrameName>,
+    /// How each of them was fitted, once it has been.
+    fittings: Vec<OnceLock<Fitting>>,
     how: ReadOptions,
     scene: Scene,
     chosen: Chosen,
@@ -133,21 +137,28 @@ struct Job<'a> {
 impl Job<'_> {
     /// Checks, before anything is written, that all files exist and have the right size. Says on stderr how pictures are fitted.
     fn check(&self) -> anyhow::Result<()> {
-        let files = self.inputs.iter().filter(|input| input.can_be_read_twice());
-        let files: Vec<_> = files.filter_map(|input| Some((input, input.file()?))).collect();
+        let is_checked = |input: &FrameName| input.file().is_some() && input.can_be_read_twice();
+        let files: Vec<_> = self.inputs.iter().enumerate().filter(|(_, input)| is_checked(input)).collect();
         // Most formats are decoded whole for this.
         let fittings =
-            parallel::map(&files, |_, (input, _)| anyhow::Ok(input.rows(&self.how, &self.scene)?.fitting()));
-        for ((_, path), fitting) in files.iter().zip(fittings) {
-            tell_fitting(path, fitting?, self.quiet);
+            parallel::map(&files, |_, (_, input)| anyhow::Ok(input.rows(&self.how, &self.scene)?.fitting()));
+        for ((index, _), fitting) in files.iter().zip(fittings) {
+            self.note(*index, fitting?);
         }
         Ok(())
     }
 
-    /// Says on stderr how the picture `input` was fitted, unless [`Self::check`] could look at it and has said so.
-    fn tell_unchecked(&self, input: &FrameName, fitting: Option<Fitting>) {
-        if let Some(path) = input.file().filter(|_| !input.can_be_read_twice()) {
-            tell_fitting(path, fitting, self.quiet);
+    /// Keeps how the input with this index was fitted, and says it on stderr.
+    fn note(&self, index: usize, fitting: Option<Fitting>) {
+        let (Some(path), Some(found)) = (self.inputs[index].file(), fitting) else { return };
+        self.fittings[index].get_or_init(|| found);
+        tell_fitting(path, fitting, self.quiet);
+    }
+
+    /// [`Self::note`], unless [`Self::check`] could look at this input.
+    fn note_unchecked(&self, index: usize, fitting: Option<Fitting>) {
+        if !self.inputs[index].can_be_read_twice() {
+            self.note(index, fitting);
         }
     }
 
@@ -163,6 +174,36 @@ impl Job<'_> {
         let is_coded = self.arguments.preview_coded || look.is_coded;
         let develop = if is_coded { preview::demosaic_coded } else { preview::demosaic };
         frames::write_rgb(path, &develop(corrected).turned(look.orientation), self.arguments.overwrite)
+    }
+
+    /// Prints what was written, by which tables it was corrected, and by which kind of `board`, or by the model if none.
+    fn report(&self, as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Exit, Failure> {
+        let tables = &self.chosen.source;
+        if as_json {
+            let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
+            let [outputs, previews] = [&places.frames, &places.previews]
+                .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+            let fitted: Vec<_> =
+                self.fittings.iter().map(|fitting| fitting.get().map(fitting_json)).collect();
+            let rest = json!({
+                "corrected_by": kind,
+                "tables": tables,
+                "outputs": outputs,
+                "previews": previews,
+                "fitted": fitted,
+            });
+            tell_result("correct", rest)?;
+            return Ok(Exit::Pass);
+        }
+        let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
+        for path in &places.frames {
+            console::tell(&format!("wrote {}, corrected by the {whom}, not judged", path.display()));
+        }
+        for path in &places.previews {
+            console::tell(&format!("wrote {}, a preview", path.display()));
+        }
+        console::tell(&format!("tables: {tables}"));
+        Ok(Exit::Pass)
     }
 }
 
@@ -184,24 +225,7 @@ impl Arguments {
     }
 }
 
-/// Prints what was written, by which tables it was corrected, and by which kind of `board`, or by the model if none.
-fn report(as_json: bool, board: Option<BoardKind>, places: &Places, tables: &str) -> Result<Exit, Failure> {
-    if as_json {
-        let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
-        let [outputs, previews] = [&places.frames, &places.previews]
-            .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-        let rest =
-            json!({ "corrected_by": kind, "tables": tables, "outputs": outputs, "previews": previews });
-        tell_result("correct", rest)?;
-        return Ok(Exit::Pass);
-    }
-    let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
-    for path in &places.frames {
-        console::tell(&format!("wrote {}, corrected by the {whom}, not judged", path.display()));
-    }
-    for path in &places.previews {
-        console::tell(&format!("wrote {}, a preview", path.display()));
-    }
-    console::tell(&format!("tables: {tables}"));
-    Ok(Exit::Pass)
+fn fitting_json(Fitting { found, cropped, wanted }: &Fitting) -> Value {
+    let size = |(width, height): &(usize, usize)| json!({ "width": width, "height": height });
+    json!({ "found": size(found), "cropped": size(cropped), "wanted": size(wanted) })
 }

@@ -57,17 +57,18 @@ impl Job<'_> {
         let (mut unread, mut unwritten) = (None, None);
         // Of the frames on their way through the board.
         let looks = RefCell::new(VecDeque::new());
-        let inputs = self.inputs.iter().map_while(|input| match self.read(input, stop) {
-            Ok(Decoded { frame, fitting, orientation, is_coded }) => {
-                self.tell_unchecked(input, fitting);
-                looks.borrow_mut().push_back(Look { orientation, is_coded });
-                Some(Arc::new(frame))
-            }
-            Err(error) => {
-                unread = Some(error);
-                None
-            }
-        });
+        let inputs =
+            self.inputs.iter().enumerate().map_while(|(index, input)| match self.read(input, stop) {
+                Ok(Decoded { frame, fitting, orientation, is_coded }) => {
+                    self.note_unchecked(index, fitting);
+                    looks.borrow_mut().push_back(Look { orientation, is_coded });
+                    Some(Arc::new(frame))
+                }
+                Err(error) => {
+                    unread = Some(error);
+                    None
+                }
+            });
         let mut indices = 0..;
         let take = |samples| {
             let look = looks.borrow_mut().pop_front().unwrap_or_default();

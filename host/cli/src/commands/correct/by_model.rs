@@ -24,7 +24,7 @@ impl Job<'_> {
         let geometry = self.chosen.tables.geometry();
         let input = &self.inputs[index];
         let mut rows = input.rows(&self.how, &self.scene).map_err(Failure::call)?;
-        self.tell_unchecked(input, rows.fitting());
+        self.note_unchecked(index, rows.fitting());
         let look = Look { orientation: rows.orientation(), is_coded: rows.is_coded() };
         let mut entering = vec![0; geometry.width()];
         let mut numbers = 0..;
