@@ -126,7 +126,10 @@ pub(super) fn list(place: Place, value: &Value, wanted: usize) -> Result<&[Value
 
 fn integer(place: Place, value: &Value) -> Result<i128, ContentError> {
     let integer = value.as_number().and_then(serde_json::Number::as_i128);
-    integer.ok_or_else(|| kind(place, value, "a whole number in plain digits"))
+    // It is read as a double, whatever its digits.
+    let is_larger = value.as_f64().is_some_and(|number| number.abs() >= 2_f64.powi(63));
+    let wanted = if is_larger { "a whole number of 64 bits" } else { "a whole number in plain digits" };
+    integer.ok_or_else(|| kind(place, value, wanted))
 }
 
 fn kind(place: Place, value: &Value, wanted: &'static str) -> ContentError {
