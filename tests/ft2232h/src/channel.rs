@@ -5,9 +5,6 @@ use std::time::Duration;
 use crate::eeprom::ChannelMode;
 use crate::far_end::{FarEnd, Unplugged};
 
-/// Bytes of a packet at high speed.
-const PACKET: usize = 512;
-
 /// The status bytes in front of every packet.
 const STATUS: usize = 2;
 
@@ -39,6 +36,8 @@ pub(crate) enum Read {
 /// A channel and what is connected to it.
 pub(crate) struct Channel {
     mode: ChannelMode,
+    /// Bytes of a packet.
+    packet: usize,
     far_end: Option<Box<dyn FarEnd>>,
     to_host: Vec<u8>,
     latency: Duration,
@@ -54,9 +53,15 @@ pub(crate) struct Channel {
 }
 
 impl Channel {
-    pub(crate) fn new(mode: ChannelMode, far_end: Option<Box<dyn FarEnd>>, board_baud: Option<u32>) -> Self {
+    pub(crate) fn new(
+        mode: ChannelMode,
+        packet: usize,
+        far_end: Option<Box<dyn FarEnd>>,
+        board_baud: Option<u32>,
+    ) -> Self {
         Self {
             mode,
+            packet,
             far_end,
             to_host: Vec::new(),
             latency: Duration::from_millis(16),
@@ -131,12 +136,13 @@ impl Channel {
     /// Appends packets to `filled`, up to `length` bytes in all: full ones at once, a short one when the latency timer has run
     /// out or the board has strobed SIWU#.
     pub(crate) fn read(&mut self, length: usize, filled: &mut Vec<u8>, now: Duration) -> Read {
+        let most = self.packet - STATUS;
         while filled.len() < length {
-            let is_full = self.to_host.len() >= PACKET - STATUS;
+            let is_full = self.to_host.len() >= most;
             if !is_full && !self.send_immediately && now < self.due() {
                 return Read::Open;
             }
-            let data = self.to_host.len().min(PACKET - STATUS);
+            let data = self.to_host.len().min(most);
             if STATUS + data > length - filled.len() {
                 return Read::Overflow;
             }
@@ -144,7 +150,7 @@ impl Channel {
             filled.extend(self.to_host.drain(..data));
             self.packet_at = now;
             self.send_immediately &= !self.to_host.is_empty();
-            if data < PACKET - STATUS {
+            if data < most {
                 return Read::Done;
             }
         }
@@ -159,7 +165,7 @@ impl Channel {
     /// Takes back packets of a read that the host gave up.
     pub(crate) fn take_back(&mut self, packets: &[u8]) {
         let data: Vec<u8> = packets
-            .chunks(PACKET)
+            .chunks(self.packet)
             .flat_map(|packet| packet.get(STATUS..).unwrap_or_default())
             .copied()
             .collect();
@@ -175,7 +181,7 @@ mod tests {
     const MS: Duration = Duration::from_millis(1);
 
     fn loopback(mode: ChannelMode) -> Channel {
-        Channel::new(mode, Some(Box::new(Loopback::default())), None)
+        Channel::new(mode, 512, Some(Box::new(Loopback::default())), None)
     }
 
     #[test]
@@ -187,6 +193,15 @@ mod tests {
         assert_eq!(filled.len(), 512);
         assert_eq!(channel.read(1024, &mut filled, 17 * MS), Read::Done);
         assert_eq!((filled.len(), &filled[510..516]), (604, &[7, 7, 0xb1, 0x60, 7, 7][..]));
+    }
+
+    #[test]
+    fn packets_of_full_speed_have_64_bytes() {
+        let mut channel = Channel::new(ChannelMode::Fifo, 64, Some(Box::new(Loopback::default())), None);
+        assert_eq!(channel.write(&[7; 63], MS), Ok(63));
+        let mut filled = Vec::new();
+        assert_eq!(channel.read(512, &mut filled, MS), Read::Done);
+        assert_eq!((filled.len(), &filled[62..]), (67, &[7, 7, 0xb1, 0x60, 7][..]));
     }
 
     #[test]
@@ -238,8 +253,8 @@ mod tests {
 
     #[test]
     fn another_rate_than_the_board_s_spoils_what_is_sent_and_says_so() {
-        let mut channel =
-            Channel::new(ChannelMode::Uart, Some(Box::new(Loopback::default())), Some(3_000_000));
+        let far_end = Box::new(Loopback::default());
+        let mut channel = Channel::new(ChannelMode::Uart, 512, Some(far_end), Some(3_000_000));
         channel.set_divisor(0x20000);
         assert_eq!(channel.write(&[1, 2, 3], MS), Ok(3));
         let mut filled = Vec::new();

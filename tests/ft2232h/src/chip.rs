@@ -1,7 +1,7 @@
 //! The chip: descriptors, requests, two channels.
 
 use crate::channel::Channel;
-use crate::descriptors::{CONFIGURATION, DEVICE, LANGUAGES, string};
+use crate::descriptors::{DEVICE, LANGUAGES, configuration, string};
 use crate::eeprom::{ChannelMode, Eeprom};
 use crate::far_end::FarEnd;
 
@@ -18,6 +18,8 @@ pub struct ChipOptions {
     pub board_baud: Option<u32>,
     /// What already is in channel B's FIFO.
     pub stale: Vec<u8>,
+    /// Whether it is plugged in where USB is not faster than full speed.
+    pub is_slowed: bool,
 }
 
 impl Default for ChipOptions {
@@ -29,7 +31,15 @@ impl Default for ChipOptions {
             eeprom: Eeprom::new(ChannelMode::Uart, ChannelMode::Fifo),
             board_baud: None,
             stale: Vec::new(),
+            is_slowed: false,
         }
+    }
+}
+
+impl ChipOptions {
+    /// Bytes of a packet.
+    fn packet(&self) -> u16 {
+        if self.is_slowed { 64 } else { 512 }
     }
 }
 
@@ -71,9 +81,16 @@ impl Chip {
                 _ => ChannelMode::Uart,
             })
         };
-        let mut channels = [Channel::new(a, None, None), Channel::new(b, Some(board), options.board_baud)];
+        let packet = options.packet().into();
+        let mut channels =
+            [Channel::new(a, packet, None, None), Channel::new(b, packet, Some(board), options.board_baud)];
         channels[1].put_in_fifo(&options.stale);
         Self { options, channels, configuration: 0 }
+    }
+
+    /// Whether it is plugged in where USB is not faster than full speed.
+    pub(crate) fn is_slowed(&self) -> bool {
+        self.options.is_slowed
     }
 
     /// The answer to a request, empty when the host asks for no data. None is a stall.
@@ -105,7 +122,7 @@ impl Chip {
     fn descriptor(&self, value: u16) -> Option<Vec<u8>> {
         match value {
             0x0100 => Some(DEVICE.to_vec()),
-            0x0200 => Some(CONFIGURATION.to_vec()),
+            0x0200 => Some(configuration(self.options.packet()).to_vec()),
             0x0300 => Some(LANGUAGES.to_vec()),
             0x0301 => Some(string("FTDI")),
             0x0302 => Some(string(&self.options.product)),
@@ -169,7 +186,8 @@ mod tests {
     #[test]
     fn the_descriptors_are_as_long_as_they_say() {
         assert_eq!(usize::from(DEVICE[0]), DEVICE.len());
-        assert_eq!(usize::from(CONFIGURATION[2]), CONFIGURATION.len());
+        let configuration = chip().control(request(0x80, 6, 0x0200, 0)).unwrap();
+        assert_eq!(usize::from(configuration[2]), configuration.len());
         assert_eq!(chip().control(request(0x80, 6, 0x0301, 0)).unwrap(), b"\x0a\x03F\0T\0D\0I\0");
     }
 

@@ -4,17 +4,20 @@
 pub(crate) const DEVICE: [u8; 18] =
     [18, 1, 0x00, 0x02, 0, 0, 0, 64, 0x03, 0x04, 0x10, 0x60, 0x00, 0x07, 1, 2, 3, 1];
 
-/// One configuration of two interfaces, bus powered, with packets of 512 bytes.
+/// One configuration of two interfaces, bus powered, with packets of `packet` bytes.
 #[rustfmt::skip]
-pub(crate) const CONFIGURATION: [u8; 55] = [
-    9, 2, 55, 0, 2, 1, 0, 0x80, 250,
-    9, 4, 0, 0, 2, 0xff, 0xff, 0xff, 2,
-    7, 5, 0x81, 2, 0x00, 0x02, 0,
-    7, 5, 0x02, 2, 0x00, 0x02, 0,
-    9, 4, 1, 0, 2, 0xff, 0xff, 0xff, 2,
-    7, 5, 0x83, 2, 0x00, 0x02, 0,
-    7, 5, 0x04, 2, 0x00, 0x02, 0,
-];
+pub(crate) fn configuration(packet: u16) -> [u8; 55] {
+    let [low, high] = packet.to_le_bytes();
+    [
+        9, 2, 55, 0, 2, 1, 0, 0x80, 250,
+        9, 4, 0, 0, 2, 0xff, 0xff, 0xff, 2,
+        7, 5, 0x81, 2, low, high, 0,
+        7, 5, 0x02, 2, low, high, 0,
+        9, 4, 1, 0, 2, 0xff, 0xff, 0xff, 2,
+        7, 5, 0x83, 2, low, high, 0,
+        7, 5, 0x04, 2, low, high, 0,
+    ]
+}
 
 /// String 0: the only language is English.
 pub(crate) const LANGUAGES: [u8; 4] = [4, 3, 0x09, 0x04];

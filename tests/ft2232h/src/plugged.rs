@@ -17,7 +17,8 @@ const CONTROLLER: &str = "/sys/devices/platform/vhci_hcd.0";
 
 const DEVICES: &str = "/sys/bus/usb/devices";
 
-/// High speed, by the kernel's number for it.
+/// Full and high speed, by the kernel's numbers for them.
+const FULL_SPEED: u32 = 2;
 const HIGH_SPEED: u32 = 3;
 
 /// The kernel names a device, and frees a port, however busy it is; only a hang takes longer.
@@ -71,10 +72,11 @@ impl Plugged {
     /// # Errors
     /// Without `vhci-hcd`, without being root, with the port taken, or when the kernel does not take the chip.
     pub fn new(chip: Chip, port: u32) -> io::Result<Self> {
+        let speed = if chip.is_slowed() { FULL_SPEED } else { HIGH_SPEED };
         let (ours, kernels) = UnixStream::pair()?;
         let server = Mutex::new(Server::new(chip, ours.try_clone()?));
         let shared = Arc::new(Shared { server, changed: Condvar::new() });
-        let attach = format!("{port} {} {} {HIGH_SPEED}", kernels.as_raw_fd(), 65536 + port + 1);
+        let attach = format!("{port} {} {} {speed}", kernels.as_raw_fd(), 65536 + port + 1);
         fs::write(Path::new(CONTROLLER).join("attach"), attach)?;
         let (listening, ticking) = (Arc::clone(&shared), Arc::clone(&shared));
         let threads =

@@ -12,6 +12,23 @@ fn a_sound_board_behind_a_uart_passes() {
     assert!(ended.json()["link"]["name"].as_str().unwrap().contains("12000000 baud"), "{ended:?}");
 }
 
+/// A hub of USB 1.1, or an isolator, makes a fast chip send packets of 64 bytes.
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn a_sound_board_at_a_port_of_full_speed_passes() {
+    for options in [ChipOptions::default(), uart()] {
+        let options = ChipOptions { is_slowed: true, ..options };
+        let _board = Plugged::new(chip(options, ",speed=1000000"), 0).unwrap();
+        let ended = verify("usb");
+        assert_eq!(
+            (ended.code, ended.json()["link"]["damaged_in"].as_u64()),
+            (Some(0), Some(0)),
+            "{}",
+            ended.headline()
+        );
+    }
+}
+
 #[test]
 #[ignore = "needs scripts/in-linux"]
 fn a_rate_that_is_not_the_board_s_is_seen_on_the_line() {

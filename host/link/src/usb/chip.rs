@@ -2,6 +2,9 @@
 
 use crate::ftdi::Speed;
 
+/// Bytes of a packet at full speed, and the most that USB allows there.
+pub(super) const FULL_SPEED_PACKET: usize = 64;
+
 /// A kind of chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Chip {
@@ -70,9 +73,9 @@ impl Chip {
         if self.channels() > 1 { u16::from(channel.0) + 1 } else { 0 }
     }
 
-    /// Bytes of a packet.
+    /// Bytes of a packet at the chip's fastest speed on USB.
     pub(super) fn packet(self) -> usize {
-        if self.is_high_speed() { 512 } else { 64 }
+        if self.is_high_speed() { 512 } else { FULL_SPEED_PACKET }
     }
 
     pub(super) fn is_high_speed(self) -> bool {

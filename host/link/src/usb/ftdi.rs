@@ -134,14 +134,17 @@ impl Ftdi<'_> {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use std::collections::VecDeque;
     use std::sync::Mutex;
     use std::time::Duration;
 
     use super::*;
 
-    /// A chip that records requests, has a blank EEPROM, and refuses one request.
+    /// A chip that records requests, has a blank EEPROM, refuses one request, and sends what it `says`.
     #[derive(Default)]
     pub(in crate::usb) struct Noting {
+        pub(in crate::usb) packet: Option<usize>,
+        pub(in crate::usb) says: Mutex<VecDeque<Vec<u8>>>,
         requests: Mutex<Vec<(u8, u16, u16)>>,
         refused: Option<u8>,
     }
@@ -154,6 +157,10 @@ pub(super) mod tests {
     }
 
     impl Transport for Noting {
+        fn packet(&self) -> Option<usize> {
+            self.packet
+        }
+
         fn request(&self, request: u8, value: u16, index: u16) -> Result<(), UsbFailure> {
             self.requests.lock().unwrap().push((request, value, index));
             if self.refused == Some(request) { Err(UsbFailure::Refused) } else { Ok(()) }
@@ -163,8 +170,10 @@ pub(super) mod tests {
             if self.refused == Some(request) { Err(UsbFailure::Refused) } else { Ok(0xffff) }
         }
 
-        fn read(&self, _: &mut [u8], _: Duration) -> Result<usize, UsbFailure> {
-            Ok(0)
+        fn read(&self, buffer: &mut [u8], _: Duration) -> Result<usize, UsbFailure> {
+            let said = self.says.lock().unwrap().pop_front().unwrap_or_default();
+            buffer[..said.len()].copy_from_slice(&said);
+            Ok(said.len())
         }
 
         fn write(&self, bytes: &[u8], _: Duration) -> Result<usize, UsbFailure> {

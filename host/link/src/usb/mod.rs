@@ -21,7 +21,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use chip::{Channel, Chip};
+use chip::{Channel, Chip, FULL_SPEED_PACKET};
 use find::{FtdiDevice, choose, sysfs};
 use ftdi::{Ftdi, Ready};
 use options::UsbOptions;
@@ -41,6 +41,9 @@ pub use transport::UsbFailure;
 
 /// What an FPGA with two synchronisers gets through an asynchronous FIFO: about 5 MB/s. The data sheet says 8.
 const FIFO_BYTES_PER_SECOND: f64 = 5e6;
+
+/// What FTDI's data sheets say of their chips of full speed (FT245BM, "Features"), which is near all that USB lets through there.
+const FULL_SPEED_BYTES_PER_SECOND: f64 = 1e6;
 
 /// A pipe through a channel of a chip.
 pub(crate) struct UsbLink {
@@ -86,7 +89,8 @@ impl UsbLink {
             Ready::Fifo => ("FIFO".to_owned(), FIFO_BYTES_PER_SECOND),
             Ready::Uart { baud, .. } => (format!("{baud} baud"), bytes_per_second(baud)),
         };
-        let (packet, is_line) = (chip.packet(), ready != Ready::Fifo);
+        let packet = transport.packet().unwrap_or(chip.packet());
+        let (is_line, is_slow) = (ready != Ready::Fifo, packet <= FULL_SPEED_PACKET);
         let unpack = Box::new(move |transfer: &[u8], data: &mut Vec<u8>, errors: &mut LineErrors| {
             strip(transfer, packet, data, is_line, errors);
         });
@@ -95,7 +99,11 @@ impl UsbLink {
         Ok(Self {
             threads,
             name: format!("{name} ({}, channel {}, {what})", chip.name(), channel.letter()),
-            bytes_per_second,
+            bytes_per_second: if is_slow {
+                bytes_per_second.min(FULL_SPEED_BYTES_PER_SECOND)
+            } else {
+                bytes_per_second
+            },
             waits_for_cts: matches!(ready, Ready::Uart { handshake: true, .. }),
             opened: Instant::now(),
         })
@@ -205,8 +213,27 @@ impl Link for UsbLink {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Mutex;
+
     use super::ftdi::tests::Noting;
     use super::*;
+
+    /// As behind a hub of USB 1.1 (libftdi's ftdi.c, _ftdi_determine_max_packet_size): 62 bytes of data in each packet of 64.
+    #[test]
+    fn a_high_speed_chip_at_a_port_of_full_speed_has_short_packets() {
+        let packets = [[&[0xb1, 0x60][..], &[7; 62]].concat(), vec![0xb1, 0x60, 8]].concat();
+        let mut transport = Noting::without_eeprom(true);
+        (transport.packet, transport.says) = (Some(64), Mutex::new([packets].into()));
+        let options = UsbOptions::of(&"usb,mode=fifo".parse().unwrap()).unwrap();
+        let mut link = UsbLink::over(transport, Chip::Ft2232h, Channel(1), "usb", &options).unwrap();
+        let (mut came, begun) = (Vec::new(), Instant::now());
+        while came.len() < 63 && begun.elapsed() < Duration::from_secs(60) {
+            link.exchange(&[], &mut came, HEED).unwrap();
+        }
+        assert_eq!(came, [&[7; 62][..], &[8]].concat());
+        // At most 19 such packets fit into a frame of 1 ms (USB 2.0, table 5-9).
+        assert!(link.bytes_per_second().unwrap() < 19.0 * 62.0 * 1e3);
+    }
 
     #[test]
     fn a_uart_with_a_handshake_sends_nothing_without_cts() {

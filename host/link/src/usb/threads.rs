@@ -254,6 +254,10 @@ mod tests {
     }
 
     impl Transport for Device {
+        fn packet(&self) -> Option<usize> {
+            None
+        }
+
         fn request(&self, _: u8, _: u16, _: u16) -> Result<(), UsbFailure> {
             Ok(())
         }

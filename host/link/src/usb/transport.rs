@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use rusb::{Context, DeviceHandle};
+use rusb::{Context, Device, DeviceHandle};
 
 /// A transfer over USB failed, and the cause is the USB driver's own error.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -24,6 +24,9 @@ pub enum UsbFailure {
 
 /// What the bytes go through. Several threads may call it at the same time.
 pub(crate) trait Transport: Send + Sync {
+    /// Bytes of a full packet to the host, if the device says it.
+    fn packet(&self) -> Option<usize>;
+
     /// A vendor request to the device.
     ///
     /// # Errors
@@ -62,6 +65,7 @@ pub(super) struct Libusb {
     interface: u8,
     endpoint_in: u8,
     endpoint_out: u8,
+    packet: Option<usize>,
 }
 
 impl Libusb {
@@ -77,8 +81,20 @@ impl Libusb {
             Err(error) => return Err(error),
         }
         handle.claim_interface(interface)?;
-        Ok(Self { handle, interface, endpoint_in, endpoint_out })
+        let packet = packet_of(&handle.device(), endpoint_in);
+        Ok(Self { handle, interface, endpoint_in, endpoint_out, packet })
     }
+}
+
+/// What the device's descriptor says about `endpoint`. Some chips say 0 there (Linux's ftdi_sio.c, ftdi_set_max_packet_size).
+fn packet_of(device: &Device<Context>, endpoint: u8) -> Option<usize> {
+    let configuration = device.active_config_descriptor().ok()?;
+    let mut settings = configuration.interfaces().flat_map(|interface| interface.descriptors());
+    let size = settings.find_map(|setting| {
+        let mut endpoints = setting.endpoint_descriptors();
+        endpoints.find(|found| found.address() == endpoint).map(|found| found.max_packet_size())
+    });
+    size.map(usize::from).filter(|&size| size > 0)
 }
 
 impl Drop for Libusb {
@@ -89,6 +105,10 @@ impl Drop for Libusb {
 }
 
 impl Transport for Libusb {
+    fn packet(&self) -> Option<usize> {
+        self.packet
+    }
+
     fn request(&self, request: u8, value: u16, index: u16) -> Result<(), UsbFailure> {
         self.handle.write_control(VENDOR_OUT, request, value, index, &[], REQUEST).map(drop).map_err(failure)
     }
