@@ -181,20 +181,30 @@ fn asked(target: &Target) -> Result<(String, Option<u32>), OpenError> {
 
 /// Connects to the first of the host's addresses that answers.
 fn connect(address: &str) -> Result<TcpStream, TcpError> {
-    let mut last = None;
+    let mut failures = Vec::new();
     for number in resolve(address)? {
         match TcpStream::connect_timeout(&number, PATIENCE) {
             Ok(stream) => return Ok(stream),
-            Err(error) => last = Some(error),
+            Err(error) => failures.push(error),
         }
     }
-    let address = address.to_owned();
-    let source = last.unwrap_or_else(|| io::ErrorKind::AddrNotAvailable.into());
-    Err(match source.kind() {
+    Err(told_by(address.to_owned(), failures))
+}
+
+/// Why none of the addresses of the host of `address` could be connected to. Of several reasons the most telling one counts, since
+/// addresses of a kind that this computer does not have fail too.
+fn told_by(address: String, failures: Vec<io::Error>) -> TcpError {
+    let source = failures.into_iter().min_by_key(|failure| match failure.kind() {
+        io::ErrorKind::ConnectionRefused => 0,
+        io::ErrorKind::TimedOut => 1,
+        _ => 2,
+    });
+    let source = source.unwrap_or_else(|| io::ErrorKind::AddrNotAvailable.into());
+    match source.kind() {
         io::ErrorKind::ConnectionRefused => TcpError::Refused(address),
         io::ErrorKind::TimedOut => TcpError::Silent { address, seconds: PATIENCE },
         _ => TcpError::Unreachable { address, source },
-    })
+    }
 }
 
 fn check_address(address: &str) -> Result<(), TcpError> {
@@ -236,6 +246,23 @@ mod tests {
         assert_eq!(found.kind(), io::ErrorKind::TimedOut);
         drop(hold);
         assert_eq!(in_time(RESOLVED, || Ok(7)).unwrap(), 7);
+    }
+
+    /// As of a name with addresses of both kinds, on a computer without IPv6: those that cannot be used come last (RFC 6724, rule
+    /// 1).
+    #[test]
+    fn of_several_addresses_the_most_telling_failure_counts() {
+        use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable, TimedOut};
+        let told = |kinds: &[io::ErrorKind]| {
+            told_by("bench:3001".to_owned(), kinds.iter().map(|&kind| kind.into()).collect())
+        };
+        assert!(matches!(told(&[ConnectionRefused, NetworkUnreachable]), TcpError::Refused(_)));
+        assert!(matches!(told(&[TimedOut, ConnectionRefused]), TcpError::Refused(_)));
+        assert!(matches!(told(&[ConnectionRefused, TimedOut]), TcpError::Refused(_)));
+        assert!(matches!(told(&[TimedOut, NetworkUnreachable]), TcpError::Silent { .. }));
+        let other = told(&[HostUnreachable, NetworkUnreachable]);
+        assert!(matches!(other, TcpError::Unreachable { source, .. } if source.kind() == HostUnreachable));
+        assert!(matches!(told(&[]), TcpError::Unreachable { .. }));
     }
 
     /// Whoever asks a run to stop may send no signal.
