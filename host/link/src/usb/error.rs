@@ -91,8 +91,8 @@ pub enum UsbError {
         /// What is known.
         found: String,
     },
-    /// The target gives a baud rate, but a FIFO has none.
-    #[error("a FIFO has no baud rate; leave out `baud=`, or say mode=uart")]
+    /// The target gives a baud rate, but the chip's channel is set up as a FIFO, which has none.
+    #[error("this channel is a FIFO, which has no baud rate; leave out `baud=`")]
     BaudOfFifo,
     /// The USB chip cannot make this baud rate.
     #[error("an {chip} cannot make {baud} baud; the nearest rates that it makes: {}", list(.nearest))]

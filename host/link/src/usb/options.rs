@@ -3,8 +3,8 @@
 use crate::options::{choice, positive, read, set};
 use crate::{OpenError, Target};
 
-const KNOWN: &str = "channel=a to channel=d, mode=fifo or mode=uart, baud=RATE, flow=rtscts or flow=none, and latency=1 to \
-                     latency=255 (milliseconds)";
+const KNOWN: &str = "channel=a to channel=d, mode=fifo or mode=uart, latency=1 to latency=255 (milliseconds), and unless \
+                     mode=fifo is among them baud=RATE, and flow=rtscts or flow=none";
 
 /// What the pins of a channel are used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +49,8 @@ impl UsbOptions {
             "latency" => set(&mut options.latency, positive(value)),
             _ => false,
         })?;
+        let of_line = |key: &str| matches!(key, "baud" | "flow");
+        read(target, KNOWN, |key, _| options.mode != Some(Mode::Fifo) || !of_line(key))?;
         Ok(options)
     }
 }
@@ -74,6 +76,21 @@ mod tests {
             latency: 16,
         };
         assert_eq!(parse(all).unwrap(), expected);
+    }
+
+    /// It has no line that could have a rate or a handshake.
+    #[test]
+    fn a_fifo_has_no_options_of_a_line() {
+        for wrong in ["baud=9600", "flow=none", "flow=rtscts"] {
+            for target in [format!("usb,mode=fifo,{wrong}"), format!("usb,{wrong},mode=fifo")] {
+                let refused = parse(&target);
+                assert!(
+                    matches!(&refused, Err(OpenError::Option { option, .. }) if option == wrong),
+                    "{target}: {refused:?}"
+                );
+            }
+        }
+        assert!(parse("usb,mode=fifo,latency=16,channel=a").is_ok());
     }
 
     #[test]
