@@ -134,6 +134,7 @@ impl OpenError {
                 UsbError::NotPermitted { .. }
                     | UsbError::Busy { .. }
                     | UsbError::OtherMode { .. }
+                    | UsbError::UnusableMode { .. }
                     | UsbError::NoMode { .. }
             ),
             _ => false,

@@ -8,7 +8,7 @@ pub enum ChannelMode {
     Uart = 0,
     /// An asynchronous FIFO like that of the FT245.
     Fifo = 1,
-    /// An opto-isolated serial line.
+    /// A synchronous serial interface for optocouplers, clocked by the board.
     Opto = 2,
     /// A bus for a processor.
     Cpu = 4,

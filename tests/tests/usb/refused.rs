@@ -22,6 +22,11 @@ fn an_eeprom_that_contradicts_the_target_is_explained() {
             "usb",
             "is a processor bus by its EEPROM",
         ),
+        (
+            ChipOptions { eeprom: Eeprom::new(ChannelMode::Uart, ChannelMode::Opto), ..uart() },
+            "usb,mode=uart",
+            "is a fast opto-isolated serial interface by its EEPROM",
+        ),
     ] {
         let _board = Plugged::new(chip(options, ""), 0).unwrap();
         let ended = verify(target);

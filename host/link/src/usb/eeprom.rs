@@ -22,7 +22,7 @@ impl fmt::Display for ChannelMode {
         f.pad(match self {
             Self::Uart => "a UART",
             Self::Fifo => "a FIFO",
-            Self::Opto => "an opto-isolated UART",
+            Self::Opto => "a fast opto-isolated serial interface",
             Self::Cpu => "a processor bus",
             Self::Ft1248 => "an FT1248 bus",
         })
@@ -34,6 +34,8 @@ impl fmt::Display for ChannelMode {
 pub(super) enum StoredMode {
     /// Its words say so.
     Stored(ChannelMode),
+    /// Its words say something that is none of FTDI's modes.
+    Foreign(u8),
     /// The chip ignores the EEPROM because it is blank, missing or has a wrong checksum, and treats its channels as UARTs.
     Ignored,
     /// It cannot be read.
@@ -46,7 +48,7 @@ impl StoredMode {
         match self {
             Self::Stored(mode) => Some(mode),
             Self::Ignored => Some(ChannelMode::Uart),
-            Self::Unknown => None,
+            Self::Foreign(_) | Self::Unknown => None,
         }
     }
 }
@@ -55,18 +57,17 @@ impl fmt::Display for StoredMode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stored(mode) => write!(f, "{mode} by its EEPROM"),
+            Self::Foreign(code) => {
+                write!(f, "set up by its EEPROM with the code {code}, which is no known mode")
+            }
             Self::Ignored => f.write_str("a UART, since its EEPROM is blank or its checksum wrong"),
             Self::Unknown => f.write_str("unknown, since its EEPROM cannot be read"),
         }
     }
 }
 
-/// What `words` say about `channel`. Fewer than [`WORDS`] mean that the EEPROM cannot be read.
+/// What `words` say about `channel` of an FT2232H or FT232H. Fewer than [`WORDS`] mean that the EEPROM cannot be read.
 pub(super) fn channel_mode(chip: Chip, channel: Channel, words: &[u16]) -> StoredMode {
-    // Always serial lines, whatever the EEPROM says.
-    if matches!(chip, Chip::Ft4232h | Chip::FullSpeed) {
-        return StoredMode::Stored(ChannelMode::Uart);
-    }
     if words.len() < usize::from(WORDS) {
         return StoredMode::Unknown;
     }
@@ -79,9 +80,9 @@ pub(super) fn channel_mode(chip: Chip, channel: Channel, words: &[u16]) -> Store
         0 => StoredMode::Stored(ChannelMode::Uart),
         1 => StoredMode::Stored(ChannelMode::Fifo),
         2 => StoredMode::Stored(ChannelMode::Opto),
-        4 if chip == Chip::Ft232h => StoredMode::Stored(ChannelMode::Ft1248),
-        3 | 4 => StoredMode::Stored(ChannelMode::Cpu),
-        _ => StoredMode::Unknown,
+        4 => StoredMode::Stored(ChannelMode::Cpu),
+        8 => StoredMode::Stored(ChannelMode::Ft1248),
+        code => StoredMode::Foreign(code),
     }
 }
 
@@ -94,13 +95,13 @@ fn is_valid(words: &[u16]) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     const B: Channel = Channel(1);
 
     /// An EEPROM of `length` words, repeated up to 128 words. The first word is `first`.
-    fn words(first: u16, length: usize) -> Vec<u16> {
+    pub(in crate::usb) fn words(first: u16, length: usize) -> Vec<u16> {
         let mut words = vec![0x0403; length];
         words[0] = first;
         let (last, content) = words.split_last_mut().unwrap();
@@ -119,10 +120,33 @@ mod tests {
             assert_eq!(stored(0x0400), StoredMode::Stored(ChannelMode::Cpu));
             assert_eq!(channel_mode(Chip::Ft2232h, Channel(0), &words(0x0801, length)), stored(0x0101));
         }
-        assert_eq!(
-            channel_mode(Chip::Ft232h, Channel(0), &words(4, 128)),
-            StoredMode::Stored(ChannelMode::Ft1248)
-        );
+    }
+
+    /// libftdi's ftdi.h: CHANNEL_IS_CPU is 4, CHANNEL_IS_FT1284 8, and DRIVER_VCPH 0x10, since its place is taken.
+    #[test]
+    fn an_ft232h_has_a_bit_more() {
+        let stored = |first| channel_mode(Chip::Ft232h, Channel(0), &words(first, 128));
+        for (code, mode) in [
+            (0, ChannelMode::Uart),
+            (1, ChannelMode::Fifo),
+            (2, ChannelMode::Opto),
+            (4, ChannelMode::Cpu),
+            (8, ChannelMode::Ft1248),
+        ] {
+            assert_eq!(stored(code), StoredMode::Stored(mode), "{code}");
+            assert_eq!(stored(0x10 | code), StoredMode::Stored(mode), "{code}");
+        }
+    }
+
+    /// libftdi's ftdi.c, bit2type: no other value is one of FTDI's.
+    #[test]
+    fn an_eeprom_that_was_read_is_not_called_unreadable() {
+        for (chip, code) in [(Chip::Ft2232h, 3), (Chip::Ft2232h, 7), (Chip::Ft232h, 12)] {
+            let stored = channel_mode(chip, Channel(0), &words(code, 64));
+            assert_eq!(stored.mode(), None, "{code}");
+            let words = stored.to_string();
+            assert!(words.contains(&format!("code {code}")) && !words.contains("cannot be read"), "{words}");
+        }
     }
 
     #[test]
@@ -137,6 +161,5 @@ mod tests {
     #[test]
     fn what_cannot_be_read_is_not_guessed() {
         assert_eq!(channel_mode(Chip::Ft2232h, B, &[]), StoredMode::Unknown);
-        assert_eq!(channel_mode(Chip::FullSpeed, Channel(0), &[]), StoredMode::Stored(ChannelMode::Uart));
     }
 }

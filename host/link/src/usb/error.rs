@@ -79,7 +79,29 @@ pub enum UsbError {
         /// `fifo` or `uart`.
         wanted: &'static str,
     },
-    /// The chip's channel is set up for a mode that this program cannot use, or its mode cannot be told.
+    /// The chip's channel is set up for a mode that is neither a UART nor a FIFO, and that this program cannot use.
+    #[error(
+        "channel {channel} of {name} is {found}, which this program cannot use; choose the channel of the board's FPGA, or set this one to \
+         `245 FIFO` or `RS232 UART`, as the bitstream has it, with FT_PROG or ftdi_eeprom (save the old contents first), then \
+         unplug the board and plug it in"
+    )]
+    UnusableMode {
+        /// The chip's name.
+        name: String,
+        /// The channel.
+        channel: char,
+        /// What its EEPROM says.
+        found: String,
+    },
+    /// The target asks for a FIFO, and a chip of this kind has none.
+    #[error("the {chip} {name} has no FIFO; leave `mode=fifo` out, and load a bitstream with a UART")]
+    NoFifo {
+        /// The chip.
+        chip: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// What the chip's channel is set up for cannot be told.
     #[error(
         "channel {channel} of {name} is {found}; choose another channel, or say mode=fifo or mode=uart if you know it"
     )]
@@ -132,7 +154,8 @@ impl UsbError {
     #[must_use]
     pub fn class(&self) -> Class {
         match self {
-            Self::NoChannel { .. } | Self::BaudOfFifo | Self::Rate { .. } => Class::Call,
+            Self::NoChannel { .. } | Self::NoFifo { .. } => Class::Call,
+            Self::BaudOfFifo | Self::Rate { .. } => Class::Call,
             Self::Several(_) | Self::OthersOnly(_) => Class::Call,
             Self::Busy { .. } => Class::Busy,
             _ => Class::Station,

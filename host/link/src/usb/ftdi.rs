@@ -61,23 +61,16 @@ impl Ftdi<'_> {
         Ok(ready)
     }
 
-    /// What the pins are for. The EEPROM decides, and the target must not contradict it.
+    /// What the channel is to be made ready for.
     fn decide(&self, options: &UsbOptions) -> Result<Ready, UsbError> {
-        let found = channel_mode(self.chip, self.channel, &self.read_eeprom()?);
-        let (name, channel) = (self.name.to_owned(), self.channel.letter());
-        let stored = match found.mode() {
-            Some(ChannelMode::Uart | ChannelMode::Opto) => Some(Mode::Uart),
-            Some(ChannelMode::Fifo) => Some(Mode::Fifo),
-            None => None,
-            Some(_) => return Err(UsbError::NoMode { name, channel, found: found.to_string() }),
-        };
-        let mode = match (options.mode, stored) {
-            (Some(wanted), Some(stored)) if wanted != stored => {
-                let (found, wanted) = (found.to_string(), wanted.name());
-                return Err(UsbError::OtherMode { name, channel, found, wanted });
+        let mode = match (self.chip, options.mode) {
+            (Chip::Ft2232h | Chip::Ft232h, wanted) => self.mode_beside_eeprom(wanted)?,
+            (Chip::Ft4232h, Some(Mode::Fifo)) => {
+                return Err(UsbError::NoFifo { chip: self.chip.name(), name: self.name.to_owned() });
             }
-            (Some(mode), _) | (None, Some(mode)) => mode,
-            (None, None) => return Err(UsbError::NoMode { name, channel, found: found.to_string() }),
+            (Chip::Ft4232h, _) => Mode::Uart,
+            // An FT245R or FT240X, which is a FIFO, has the product id of an FT232R or FT231X.
+            (Chip::FullSpeed, wanted) => wanted.unwrap_or(Mode::Uart),
         };
         match (mode, options.baud) {
             (Mode::Fifo, Some(_)) => Err(UsbError::BaudOfFifo),
@@ -86,6 +79,28 @@ impl Ftdi<'_> {
                 let baud = baud.unwrap_or_else(|| self.chip.speed().fastest());
                 self.divisor(baud).map(|_| Ready::Uart { baud, handshake: options.handshake })
             }
+        }
+    }
+
+    /// What the pins are for. The EEPROM decides, and the target must not contradict it.
+    fn mode_beside_eeprom(&self, wanted: Option<Mode>) -> Result<Mode, UsbError> {
+        let found = channel_mode(self.chip, self.channel, &self.read_eeprom()?);
+        let stored = found.mode();
+        let (name, channel, found) = (self.name.to_owned(), self.channel.letter(), found.to_string());
+        let stored = match stored {
+            Some(ChannelMode::Uart) => Some(Mode::Uart),
+            Some(ChannelMode::Fifo) => Some(Mode::Fifo),
+            Some(ChannelMode::Opto | ChannelMode::Cpu | ChannelMode::Ft1248) => {
+                return Err(UsbError::UnusableMode { name, channel, found });
+            }
+            None => None,
+        };
+        match (wanted, stored) {
+            (Some(wanted), Some(stored)) if wanted != stored => {
+                Err(UsbError::OtherMode { name, channel, found, wanted: wanted.name() })
+            }
+            (Some(mode), _) | (None, Some(mode)) => Ok(mode),
+            (None, None) => Err(UsbError::NoMode { name, channel, found }),
         }
     }
 
@@ -138,14 +153,17 @@ pub(super) mod tests {
     use std::sync::Mutex;
     use std::time::Duration;
 
+    use super::super::eeprom::tests::words;
     use super::*;
 
-    /// A chip that records requests, has a blank EEPROM, refuses one request, and sends what it `says`.
+    /// A chip that records requests, has a blank EEPROM unless another is given, refuses one request, and sends what it `says`.
     #[derive(Default)]
     pub(in crate::usb) struct Noting {
         pub(in crate::usb) packet: Option<usize>,
         pub(in crate::usb) says: Mutex<VecDeque<Vec<u8>>>,
         requests: Mutex<Vec<(u8, u16, u16)>>,
+        eeprom: Option<Vec<u16>>,
+        words_read: Mutex<usize>,
         refused: Option<u8>,
     }
 
@@ -166,8 +184,11 @@ pub(super) mod tests {
             if self.refused == Some(request) { Err(UsbFailure::Refused) } else { Ok(()) }
         }
 
-        fn request_word(&self, request: u8, _: u16, _: u16) -> Result<u16, UsbFailure> {
-            if self.refused == Some(request) { Err(UsbFailure::Refused) } else { Ok(0xffff) }
+        fn request_word(&self, request: u8, _: u16, index: u16) -> Result<u16, UsbFailure> {
+            *self.words_read.lock().unwrap() += 1;
+            let word = |words: &Vec<u16>| words[usize::from(index)];
+            let word = self.eeprom.as_ref().map_or(0xffff, word);
+            if self.refused == Some(request) { Err(UsbFailure::Refused) } else { Ok(word) }
         }
 
         fn read(&self, buffer: &mut [u8], _: Duration) -> Result<usize, UsbFailure> {
@@ -230,6 +251,39 @@ pub(super) mod tests {
             assert!(make_ready(&chip, Chip::Ft2232h, target).is_err(), "{target}");
             assert!(chip.requests.lock().unwrap().is_empty(), "{target}");
         }
+    }
+
+    /// A processor's bus and the fast serial interface for optocouplers, both at B, and an FT1248 bus: neither mode is theirs.
+    #[test]
+    fn a_channel_that_is_neither_uart_nor_fifo_is_to_be_set_up_anew() {
+        for (chip, first) in [(Chip::Ft2232h, 0x0400), (Chip::Ft2232h, 0x0200), (Chip::Ft232h, 0x0008)] {
+            for target in ["usb", "usb,mode=uart", "usb,mode=fifo"] {
+                let device = Noting { eeprom: Some(words(first, 64)), ..Noting::default() };
+                let refused = make_ready(&device, chip, target).unwrap_err().to_string();
+                assert!(refused.contains("FT_PROG") && !refused.contains("say mode="), "{refused}");
+                assert!(device.requests.lock().unwrap().is_empty());
+            }
+        }
+    }
+
+    /// FT245R and FT240X have the product ids of FT232R and FT231X, and are FIFOs; their EEPROMs do not say so.
+    #[test]
+    fn of_a_chip_of_full_speed_the_target_says_what_it_is() {
+        let uart = Ready::Uart { baud: 3_000_000, handshake: true };
+        for (target, ready) in [("usb", uart), ("usb,mode=uart", uart), ("usb,mode=fifo", Ready::Fifo)] {
+            let chip = Noting::default();
+            assert_eq!(make_ready(&chip, Chip::FullSpeed, target).unwrap(), ready, "{target}");
+            assert_eq!(*chip.words_read.lock().unwrap(), 0, "{target}");
+        }
+    }
+
+    #[test]
+    fn a_chip_of_four_channels_has_no_fifo() {
+        let chip = Noting::default();
+        let refused = make_ready(&chip, Chip::Ft4232h, "usb,mode=fifo").unwrap_err().to_string();
+        assert!(refused.contains("has no FIFO") && !refused.contains("EEPROM"), "{refused}");
+        assert!(make_ready(&chip, Chip::Ft4232h, "usb").is_ok());
+        assert_eq!(*chip.words_read.lock().unwrap(), 0);
     }
 
     #[test]

@@ -105,6 +105,8 @@ codes! {
         NotPermitted [name] => "usb-not-permitted",
         Busy [what, holders] => "usb-in-use",
         OtherMode [name, channel, found, wanted] => "usb-channel-in-other-mode",
+        UnusableMode [name, channel, found] => "usb-channel-mode-unusable",
+        NoFifo [chip, name] => "usb-chip-without-fifo",
         NoMode [name, channel, found] => "usb-channel-mode-unknown",
         BaudOfFifo => "usb-fifo-has-no-rate",
         Rate [chip, baud, nearest] => "usb-rate-not-made",
