@@ -4,6 +4,9 @@
 /// FTDI's vendor id.
 pub(crate) const VENDOR: u16 = 0x0403;
 
+/// The product ids of the chips that this program opens over USB, and that scripts/70-halfrow.rules names.
+pub(crate) const PRODUCTS: [u16; 5] = [0x6001, 0x6010, 0x6011, 0x6014, 0x6015];
+
 /// How far a rate may be from the one that was asked for. A receiver samples the last of ten bits half a bit from its edge, so 5
 /// % would miss it. Each side may use up a part of that.
 pub(crate) const TOLERANCE: f64 = 0.02;
@@ -78,6 +81,16 @@ pub(crate) fn list(rates: &[u32]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Without this, the rules are recommended to users whom they do not help.
+    #[test]
+    fn the_rules_let_users_open_every_chip_that_is_opened() {
+        let rules = include_str!("../../../scripts/70-halfrow.rules");
+        let listed = rules.split("ATTRS{idProduct}==\"").nth(1).unwrap().split('"').next().unwrap();
+        let mut listed: Vec<_> = listed.split('|').map(|id| u16::from_str_radix(id, 16).unwrap()).collect();
+        listed.sort_unstable();
+        assert_eq!(listed, PRODUCTS);
+    }
 
     #[test]
     fn the_family_is_told_by_the_version() {

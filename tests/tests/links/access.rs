@@ -22,7 +22,7 @@ fn a_port_that_one_may_not_open_is_told_from_one_that_is_not_there() {
     fs::set_permissions(pty.path(), Permissions::from_mode(0o000)).unwrap();
     let target = format!("serial:{}", pty.path().display());
     ends(&info_as_nobody(&folder, &target), 3, "you may not open /dev/pts/");
-    ends(&info_as_nobody(&folder, &target), 3, "install scripts/70-halfrow.rules");
+    ends(&info_as_nobody(&folder, &target), 3, "ask root for read and write access to it");
     let looked = finish(&mut folder.as_nobody(&["boards", "--json", "--ask", &target])).json();
     assert_eq!(looked["boards"][0]["access"]["state"], "denied", "{looked}");
     fs::set_permissions(pty.path(), Permissions::from_mode(0o660)).unwrap();

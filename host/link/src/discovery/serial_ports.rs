@@ -37,18 +37,18 @@ pub(super) fn look_at(path: &Path) -> Found {
         summary: usb.as_ref().map_or_else(|| "a serial port without USB".to_owned(), summary),
         device: Some(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())),
         names,
+        access: access_to(path, usb.as_ref()),
         usb,
-        access: access_to(path),
         answer: None,
     }
 }
 
-fn access_to(path: &Path) -> Access {
+fn access_to(path: &Path, usb: Option<&UsbDevice>) -> Access {
     if !path.exists() {
         return Access::Missing;
     }
     if access(path, AccessFlags::R_OK | AccessFlags::W_OK).is_err() {
-        return Access::Denied { remedy: how_to_get_access(path) };
+        return Access::Denied { remedy: how_to_get_access(path, usb) };
     }
     let holders = holders(path);
     if holders.is_empty() { Access::Free } else { Access::Busy { holders } }

@@ -28,7 +28,7 @@ fn look_at(board: &UsbBoard, target: String) -> Found {
 
 fn access_to(board: &UsbBoard) -> Access {
     if !board.is_permitted {
-        return Access::Denied { remedy: how_to_get_access(&board.file) };
+        return Access::Denied { remedy: how_to_get_access(&board.file, Some(&board.device)) };
     }
     let holders = board.holders();
     if holders.is_empty() { Access::Free } else { Access::Busy { holders } }

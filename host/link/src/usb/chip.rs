@@ -91,9 +91,12 @@ impl Chip {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ftdi::PRODUCTS;
 
     #[test]
     fn chips_are_told_by_product_and_version() {
+        let all: Vec<u16> = (0..=u16::MAX).filter(|&product| Chip::of(product, 0x0700).is_some()).collect();
+        assert_eq!(all, PRODUCTS);
         assert_eq!(Chip::of(0x6010, 0x0700), Some(Chip::Ft2232h));
         // The FT2232C of 2004 is no high-speed chip.
         assert_eq!(Chip::of(0x6010, 0x0500), None);

@@ -174,7 +174,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     (
         "serial-port-not-permitted",
-        "join the group that the message names, or install scripts/70-halfrow.rules as docs/boards.md says",
+        "do what the message says: join a group, install scripts/70-halfrow.rules as docs/boards.md says, or ask root for access",
     ),
     (
         "serial-rate-not-made",
