@@ -127,11 +127,15 @@ impl OpenError {
     pub fn is_kept_from_us(&self) -> bool {
         match self {
             Self::Serial(error) => {
-                matches!(error, SerialError::NotAllowed { .. } | SerialError::InUse { .. })
+                matches!(
+                    error,
+                    SerialError::NotAllowed { .. } | SerialError::NotGiven(_) | SerialError::InUse { .. }
+                )
             }
             Self::Usb(error) => matches!(
                 error,
                 UsbError::NotPermitted { .. }
+                    | UsbError::NotGiven { .. }
                     | UsbError::Busy { .. }
                     | UsbError::OtherMode { .. }
                     | UsbError::UnusableMode { .. }

@@ -52,6 +52,18 @@ fn usb_device_in(class: &Path) -> Option<UsbDevice> {
     }
 }
 
+/// Whether the kernel has the port `port`, which is not among this program's devices, as in a container to which it was not passed
+/// on.
+pub(crate) fn is_withheld(port: &Path) -> bool {
+    is_withheld_in(Path::new("/dev"), Path::new("/sys/class/tty"), port)
+}
+
+/// The same, given the folders of devices and of ports.
+fn is_withheld_in(devices: &Path, class: &Path, port: &Path) -> bool {
+    let name = port.file_name().filter(|_| port.parent() == Some(devices) && !port.exists());
+    name.is_some_and(|name| class.join(name).exists())
+}
+
 fn text(folder: &Path, file: &str) -> Option<String> {
     let text = fs::read_to_string(folder.join(file)).ok()?;
     Some(text.trim().to_owned()).filter(|text| !text.is_empty())
@@ -87,6 +99,21 @@ mod tests {
             (found.serial.as_deref(), found.product, found.interface),
             (Some("FT3XYZ"), None, Some(1))
         );
+    }
+
+    #[test]
+    fn a_port_that_is_kept_from_this_program_is_told_from_one_that_is_not_there() {
+        let root = tempfile::tempdir().unwrap();
+        let (devices, class) = (root.path().join("dev"), root.path().join("class"));
+        fs::create_dir_all(&devices).unwrap();
+        for port in ["ttyUSB0", "ttyUSB1"] {
+            fs::create_dir_all(class.join(port)).unwrap();
+        }
+        fs::write(devices.join("ttyUSB0"), "").unwrap();
+        let is_withheld = |port: &str| is_withheld_in(&devices, &class, &devices.join(port));
+        assert!(is_withheld("ttyUSB1"));
+        assert!(!is_withheld("ttyUSB0") && !is_withheld("ttyUSB2"));
+        assert!(!is_withheld_in(&devices, &class, Path::new("ttyUSB1")));
     }
 
     #[test]

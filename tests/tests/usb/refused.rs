@@ -1,9 +1,10 @@
 //! What a chip is not set up for, or this user may not do.
 
+use std::fs;
 use std::os::unix::process::CommandExt as _;
 
 use halfrow_ft2232h::{ChannelMode, ChipOptions, Eeprom, Plugged};
-use halfrow_tests::program::{command, finish};
+use halfrow_tests::program::{command, finish, halfrow};
 use halfrow_tests::usb::{chip, plug, uart, verify};
 
 #[test]
@@ -48,6 +49,26 @@ fn what_the_chip_cannot_do_is_a_wrong_call() {
         assert_eq!(ended.code, Some(2), "{target}: {ended:?}");
         assert!(ended.headline().contains(words), "{target}: {ended:?}");
     }
+}
+
+/// A container whose /dev has no file of the device still sees it in /sys.
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn a_device_that_the_program_is_not_given_is_not_said_to_be_unplugged() {
+    let board = plug("");
+    let number = |file: &str| {
+        let told = fs::read_to_string(format!("/sys/bus/usb/devices/{}/{file}", board.bus_name())).unwrap();
+        told.trim().parse::<u32>().unwrap()
+    };
+    fs::remove_file(format!("/dev/bus/usb/{:03}/{:03}", number("busnum"), number("devnum"))).unwrap();
+    let ended = verify("usb");
+    assert_eq!(ended.code, Some(3), "{ended:?}");
+    assert!(ended.headline().contains("is plugged in, but this program is not given it"), "{ended:?}");
+    let listed = halfrow(["boards", "--json"]).json();
+    let mut listed = listed["boards"].as_array().unwrap().iter();
+    let access = &listed.find(|board| board["target"] == "usb:HR000001").unwrap()["access"];
+    assert_eq!(access["state"], "denied", "{access}");
+    assert!(access["remedy"].as_str().unwrap().contains("container"), "{access}");
 }
 
 #[test]

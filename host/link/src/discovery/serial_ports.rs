@@ -3,9 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use nix::errno::Errno;
 use nix::unistd::{AccessFlags, access};
 
-use super::{Access, Found};
+use super::{Access, Found, HAVE_IT};
+use crate::sysfs::is_withheld;
 use crate::target::BoardKind;
 use crate::{UsbDevice, holders, how_to_get_access, usb_device};
 
@@ -44,11 +46,14 @@ pub(super) fn look_at(path: &Path) -> Found {
 }
 
 fn access_to(path: &Path, usb: Option<&UsbDevice>) -> Access {
-    if !path.exists() {
+    if !path.exists() && !is_withheld(path) {
         return Access::Missing;
     }
-    if access(path, AccessFlags::R_OK | AccessFlags::W_OK).is_err() {
-        return Access::Denied { remedy: how_to_get_access(path, usb) };
+    match access(path, AccessFlags::R_OK | AccessFlags::W_OK) {
+        Ok(()) => {}
+        // Only the control group of a container or service says EPERM.
+        Err(Errno::ENOENT | Errno::EPERM) => return Access::Denied { remedy: HAVE_IT.to_owned() },
+        Err(_) => return Access::Denied { remedy: how_to_get_access(path, usb) },
     }
     let holders = holders(path);
     if holders.is_empty() { Access::Free } else { Access::Busy { holders } }

@@ -1,6 +1,6 @@
 //! FTDI's chips on USB, whether or not the system has made serial ports of them.
 
-use super::{Access, Found};
+use super::{Access, Found, HAVE_IT};
 use crate::target::BoardKind;
 use crate::{UsbBoard, how_to_get_access, usb_boards};
 
@@ -27,6 +27,9 @@ fn look_at(board: &UsbBoard, target: String) -> Found {
 }
 
 fn access_to(board: &UsbBoard) -> Access {
+    if !board.is_given {
+        return Access::Denied { remedy: HAVE_IT.to_owned() };
+    }
     if !board.is_permitted {
         return Access::Denied { remedy: how_to_get_access(&board.file, Some(&board.device)) };
     }

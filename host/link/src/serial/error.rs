@@ -29,6 +29,12 @@ pub enum SerialError {
         /// How to get access.
         remedy: String,
     },
+    /// The serial port is there, but this program is not given it, as in a container to which it was not passed on.
+    #[error(
+        "{0} is on this computer, but this program is not given it; let the container or service that this program runs in \
+         have it, as docs/install.md says"
+    )]
+    NotGiven(PathBuf),
     /// Another program is using the serial port.
     #[error("{path} is in use by {}", by(.holders))]
     InUse {

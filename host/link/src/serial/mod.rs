@@ -17,7 +17,7 @@ use nix::sys::stat::{major, minor};
 use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort, TTYPort};
 
 use super::descriptor::{Gone, Pump, never_block};
-use super::sysfs::{UsbDevice, usb_device};
+use super::sysfs::{UsbDevice, is_withheld, usb_device};
 use super::{HEED, Link, LinkError, OpenError, bytes_per_second};
 use crate::ftdi::{self, Speed};
 use crate::target::Target;
@@ -157,15 +157,22 @@ fn is_no_port(found: &Metadata) -> bool {
 fn lock(path: &Path, options: SerialOptions) -> Result<TTYPort, SerialError> {
     let flow = if options.rts_cts { FlowControl::Hardware } else { FlowControl::None };
     let builder = serialport::new(path.to_string_lossy(), options.baud).flow_control(flow).exclusive(true);
-    builder.open_native().map_err(|error| match error.kind {
+    builder.open_native().map_err(|error| refused(path, error))
+}
+
+/// The error of the crate that opens ports, which names few of the system's errors.
+fn refused(path: &Path, error: serialport::Error) -> SerialError {
+    match error.kind {
         ErrorKind::NoDevice => SerialError::InUse { path: path.to_owned(), holders: keepers(path) },
         ErrorKind::Io(kind) => failed(path, io::Error::new(kind, error.description)),
         // What a system answers if a terminal's call is made on something else.
         _ if error.description.contains("typewriter") || error.description.contains("ioctl") => {
             SerialError::NotAPort(path.to_owned())
         }
+        // Only the control group of a container or service says this; EACCES is another kind.
+        _ if error.description == Errno::EPERM.desc() => SerialError::NotGiven(path.to_owned()),
         _ => failed(path, io::Error::other(error.description)),
-    })
+    }
 }
 
 /// Sets DTR, and RTS unless flow control uses it. A port without these lines has nothing to set.
@@ -204,6 +211,7 @@ fn check_taken_rate(port: &TTYPort, path: &Path, baud: u32) -> Result<(), Serial
 fn failed(path: &Path, error: io::Error) -> SerialError {
     let path = path.to_owned();
     match error.kind() {
+        io::ErrorKind::NotFound if is_withheld(&path) => SerialError::NotGiven(path),
         io::ErrorKind::NotFound => SerialError::Missing(path),
         // Such a path leads nowhere, whatever is plugged in.
         io::ErrorKind::NotADirectory => SerialError::NotAPort(path),
@@ -264,6 +272,19 @@ mod tests {
         ] {
             assert_eq!(how_to_get_access(file.path(), device.as_ref()), remedy);
         }
+    }
+
+    /// Its control group says EPERM, for which that crate has no kind (posix/error.rs of serialport 4.10).
+    #[test]
+    fn a_port_that_a_container_is_not_given_is_not_said_to_be_unplugged() {
+        let path = Path::new("/dev/ttyUSB99");
+        let error = serialport::Error::new(ErrorKind::Unknown, "Operation not permitted");
+        let refused = refused(path, error);
+        assert!(matches!(&refused, SerialError::NotGiven(port) if port == path), "{refused:?}");
+        assert_eq!(refused.class(), crate::Class::Station);
+        assert!(!refused.to_string().contains("unplug"), "{refused}");
+        let missing = failed(path, io::ErrorKind::NotFound.into());
+        assert!(matches!(missing, SerialError::Missing(_)), "{missing:?}");
     }
 
     /// Whoever asks a run to stop may send no signal.

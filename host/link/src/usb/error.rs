@@ -57,6 +57,15 @@ pub enum UsbError {
         /// The chip's name.
         name: String,
     },
+    /// The USB device is plugged in, but this program is not given it, as in a container to which it was not passed on.
+    #[error(
+        "the USB device {name} is plugged in, but this program is not given it; let the container or service that this program \
+         runs in have it, as docs/install.md says"
+    )]
+    NotGiven {
+        /// The chip's name.
+        name: String,
+    },
     /// Another program is using the USB device.
     #[error("{} is in use by {}", .what, by(.holders))]
     Busy {

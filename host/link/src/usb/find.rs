@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rusb::{Context, Device, UsbContext as _, Version};
 use serde::Serialize;
@@ -28,6 +28,8 @@ pub struct UsbBoard {
     pub place: String,
     /// Whether this user may open it.
     pub is_permitted: bool,
+    /// Whether this program is given it at all; in a container it may not be.
+    pub is_given: bool,
 }
 
 impl UsbBoard {
@@ -93,7 +95,9 @@ fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
     let version = bcd(descriptor.device_version());
     let chip = (descriptor.vendor_id() == VENDOR).then(|| Chip::of(descriptor.product_id(), version))??;
     let place = place(&device);
-    let handle = device.open().ok();
+    let opened = device.open();
+    let is_given = !opened.as_ref().is_err_and(|&error| is_withheld(error, &sysfs(&place)));
+    let handle = opened.ok();
     // Linux gives the strings even to users who may not open the device.
     let string = |file: &str, index: Option<u8>| {
         let told = fs::read_to_string(sysfs(&place).join(file)).ok().map(|text| text.trim().to_owned());
@@ -116,8 +120,15 @@ fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
     };
     let file = PathBuf::from(format!("/dev/bus/usb/{:03}/{:03}", device.bus_number(), device.address()));
     let (chip_name, is_permitted) = (chip.name(), handle.is_some());
-    let board = UsbBoard { device: described, chip: chip_name, place, file, is_permitted };
+    let board = UsbBoard { device: described, chip: chip_name, place, file, is_permitted, is_given };
     Some(FtdiDevice { board, chip, device })
+}
+
+/// Whether the device of this folder in sysfs, which `error` kept from being opened, is there and only kept from this program.
+/// libusb takes a file that is not in /dev for NO_DEVICE, and what a control group says, EPERM, for IO (linux_usbfs.c,
+/// get_usbfs_fd).
+pub(super) fn is_withheld(error: rusb::Error, folder: &Path) -> bool {
+    matches!(error, rusb::Error::NoDevice | rusb::Error::Io) && folder.exists()
 }
 
 /// A version as in the descriptor: four decimal digits. The first two come as one number here.
@@ -183,6 +194,7 @@ mod tests {
             file: PathBuf::new(),
             place: place.to_owned(),
             is_permitted: true,
+            is_given: true,
         };
         let serials = [Some("FT1"), Some("FT,1"), Some("FT,mode=fifo"), Some("twice"), Some("twice"), None];
         let all: Vec<_> =
@@ -193,6 +205,17 @@ mod tests {
             let target: Target = target.parse().unwrap();
             assert!(target.options.is_empty() && board.is_called(&target.address.unwrap()));
         }
+    }
+
+    /// A device that is unplugged leaves its folder with it.
+    #[test]
+    fn a_device_that_is_kept_from_this_program_is_not_said_to_be_gone() {
+        let folder = tempfile::tempdir().unwrap();
+        for error in [rusb::Error::NoDevice, rusb::Error::Io] {
+            assert!(is_withheld(error, folder.path()));
+            assert!(!is_withheld(error, &folder.path().join("1-9")));
+        }
+        assert!(!is_withheld(rusb::Error::Access, folder.path()));
     }
 
     #[test]

@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use chip::{Channel, Chip, FULL_SPEED_PACKET};
-use find::{FtdiDevice, choose, sysfs};
+use find::{FtdiDevice, choose, is_withheld, sysfs};
 use ftdi::{Ftdi, Ready};
 use options::UsbOptions;
 use packets::strip;
@@ -128,7 +128,10 @@ fn claim(found: &FtdiDevice, channel: Channel, name: &str) -> Result<Libusb, Usb
             UsbError::Transfer { name: name.to_owned(), doing: "opening the device", source }
         }
     };
-    let handle = found.device.open().map_err(failed)?;
+    let handle = found.device.open().map_err(|error| {
+        let is_withheld = is_withheld(error, &sysfs(&found.board.place));
+        if is_withheld { UsbError::NotGiven { name: name.to_owned() } } else { failed(error) }
+    })?;
     Libusb::claim(handle, channel.0, found.chip.endpoints(channel)).map_err(failed)
 }
 
