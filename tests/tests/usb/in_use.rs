@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::SystemTime;
 
 use halfrow_tests::patience::wait_until;
-use halfrow_tests::program::{Running, command};
+use halfrow_tests::program::{Running, command, halfrow};
 use halfrow_tests::usb::{plug, plug_and_watch, serial_port, verify};
 
 /// A shell that has a serial port open.
@@ -77,7 +77,19 @@ fn two_programs_do_not_share_a_channel() {
         ended.headline().contains("channel B of usb:HR000001 is in use by program (process"),
         "{ended:?}"
     );
+    let access = || {
+        let listed = halfrow(["boards", "--json"]).json();
+        let mut listed = listed["boards"].as_array().unwrap().iter();
+        listed.find(|board| board["target"] == "usb:HR000001").unwrap()["access"].clone()
+    };
+    let held = access();
+    assert_eq!(
+        (&held["state"], &held["holders"][0]["process"]),
+        (&"busy".into(), &std::process::id().into()),
+        "{held}"
+    );
     drop(link);
+    assert_eq!(access()["state"], "free");
     assert_eq!(verify("usb").code, Some(0));
 }
 

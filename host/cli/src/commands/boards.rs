@@ -141,8 +141,9 @@ fn state(device: &Found) -> String {
     match &device.access {
         Access::Free => "free; --ask tells whether a board answers".to_owned(),
         Access::Busy { holders } => {
-            let holders: Vec<_> = holders.iter().map(ToString::to_string).collect();
-            format!("busy: {} has it open", holders.join(" and "))
+            let known: Vec<_> = holders.iter().map(ToString::to_string).collect();
+            let by = if known.is_empty() { "another program".to_owned() } else { known.join(" and ") };
+            format!("busy: {by} has it open")
         }
         Access::Denied { remedy } => format!("you may not open it; {remedy}"),
         Access::Missing => "is not there; check that the board is plugged in and powered".to_owned(),
@@ -152,7 +153,7 @@ fn state(device: &Found) -> String {
 
 #[cfg(test)]
 mod tests {
-    use halfrow::link::UsbDevice;
+    use halfrow::link::{Holder, UsbDevice};
 
     use super::*;
 
@@ -179,6 +180,17 @@ mod tests {
         };
         ask(&mut device, probe).unwrap();
         device
+    }
+
+    /// Only root sees the programs of other users.
+    #[test]
+    fn a_device_that_somebody_unknown_has_open_is_busy_all_the_same() {
+        let port = "serial:/dev/ttyUSB99".parse().unwrap();
+        let mut device = Found { access: Access::Busy { holders: Vec::new() }, ..Found::named(&port) };
+        assert_eq!(state(&device), "busy: another program has it open");
+        let holders = vec![Holder { process: 7, program: "sh".to_owned() }];
+        device.access = Access::Busy { holders };
+        assert_eq!(state(&device), "busy: sh (process 7) has it open");
     }
 
     #[test]

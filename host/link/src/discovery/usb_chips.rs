@@ -33,6 +33,5 @@ fn access_to(board: &UsbBoard) -> Access {
     if !board.is_permitted {
         return Access::Denied { remedy: how_to_get_access(&board.file, Some(&board.device)) };
     }
-    let holders = board.holders();
-    if holders.is_empty() { Access::Free } else { Access::Busy { holders } }
+    board.holders().map_or(Access::Free, |holders| Access::Busy { holders })
 }

@@ -42,11 +42,18 @@ impl UsbBoard {
         format!("usb:{}", own.unwrap_or(&self.place))
     }
 
-    /// Other programs that have opened the serial port that the system's driver made of the board's channel.
+    /// Other programs that have the board's channel, as far as this user may know: that have opened the serial port that the
+    /// system's driver made of it, or the device while somebody has claimed the channel. None if nobody has it.
     #[must_use]
-    pub fn holders(&self) -> Vec<Holder> {
+    pub fn holders(&self) -> Option<Vec<Holder>> {
         let channel = Channel(self.device.interface.unwrap_or_default());
-        serial_ports(&self.place, channel).iter().flat_map(|port| holders(port)).collect()
+        let mut all: Vec<_> =
+            serial_ports(&self.place, channel).iter().flat_map(|port| holders(port)).collect();
+        let is_claimed = is_claimed(&interface(&self.place, channel));
+        if is_claimed {
+            all.extend(holders(&self.file));
+        }
+        (is_claimed || !all.is_empty()).then_some(all)
     }
 
     fn is_called(&self, name: &str) -> bool {
@@ -142,6 +149,16 @@ pub(super) fn sysfs(place: &str) -> PathBuf {
     PathBuf::from("/sys/bus/usb/devices").join(place)
 }
 
+/// Linux's folder for the interface of a channel.
+pub(super) fn interface(place: &str, channel: Channel) -> PathBuf {
+    sysfs(place).join(format!("{place}:1.{}", channel.0))
+}
+
+/// Whether a program has claimed the interface of this folder, from which the system's driver is detached as long.
+fn is_claimed(interface: &Path) -> bool {
+    fs::read_link(interface.join("driver")).is_ok_and(|driver| driver.ends_with("usbfs"))
+}
+
 fn place(device: &Device<Context>) -> String {
     let ports: Vec<String> =
         device.port_numbers().unwrap_or_default().iter().map(ToString::to_string).collect();
@@ -216,6 +233,19 @@ mod tests {
             assert!(!is_withheld(error, &folder.path().join("1-9")));
         }
         assert!(!is_withheld(rusb::Error::Access, folder.path()));
+    }
+
+    /// As the links of sysfs look while libusb has claimed an interface, and while the serial driver has it.
+    #[test]
+    fn an_interface_that_a_program_has_claimed_is_seen_without_opening_it() {
+        let interface = tempfile::tempdir().unwrap();
+        let driver = interface.path().join("driver");
+        assert!(!is_claimed(interface.path()));
+        std::os::unix::fs::symlink("../../../../bus/usb/drivers/ftdi_sio", &driver).unwrap();
+        assert!(!is_claimed(interface.path()));
+        fs::remove_file(&driver).unwrap();
+        std::os::unix::fs::symlink("../../../../bus/usb/drivers/usbfs", &driver).unwrap();
+        assert!(is_claimed(interface.path()));
     }
 
     #[test]

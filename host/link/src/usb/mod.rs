@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use chip::{Channel, Chip, FULL_SPEED_PACKET};
-use find::{FtdiDevice, choose, is_withheld, sysfs};
+use find::{FtdiDevice, choose, interface, is_withheld, sysfs};
 use ftdi::{Ftdi, Ready};
 use options::UsbOptions;
 use packets::strip;
@@ -145,8 +145,7 @@ fn asked(target: &Target) -> Result<UsbOptions, OpenError> {
 
 /// The serial ports that the system's driver made of the channel.
 fn serial_ports(place: &str, channel: Channel) -> Vec<PathBuf> {
-    let interface = sysfs(place).join(format!("{place}:1.{}", channel.0));
-    let entries = fs::read_dir(interface).into_iter().flatten().flatten();
+    let entries = fs::read_dir(interface(place, channel)).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
     names.filter(|name| name.starts_with("ttyUSB")).map(|name| Path::new("/dev").join(name)).collect()
 }
