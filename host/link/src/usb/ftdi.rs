@@ -266,7 +266,7 @@ pub(super) mod tests {
         }
     }
 
-    /// FT245R and FT240X have the product ids of FT232R and FT231X, and are FIFOs; their EEPROMs do not say so.
+    /// FT245R and FT240X have the product ids of FT232R and FT231X, and are FIFOs.
     #[test]
     fn of_a_chip_of_full_speed_the_target_says_what_it_is() {
         let uart = Ready::Uart { baud: 3_000_000, handshake: true };

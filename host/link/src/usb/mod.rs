@@ -90,7 +90,8 @@ impl UsbLink {
             Ready::Uart { baud, .. } => (format!("{baud} baud"), bytes_per_second(baud)),
         };
         let packet = transport.packet().unwrap_or(chip.packet());
-        let (is_line, is_slow) = (ready != Ready::Fifo, packet <= FULL_SPEED_PACKET);
+        let most = if packet <= FULL_SPEED_PACKET { FULL_SPEED_BYTES_PER_SECOND } else { f64::INFINITY };
+        let is_line = ready != Ready::Fifo;
         let unpack = Box::new(move |transfer: &[u8], data: &mut Vec<u8>, errors: &mut LineErrors| {
             strip(transfer, packet, data, is_line, errors);
         });
@@ -99,11 +100,7 @@ impl UsbLink {
         Ok(Self {
             threads,
             name: format!("{name} ({}, channel {}, {what})", chip.name(), channel.letter()),
-            bytes_per_second: if is_slow {
-                bytes_per_second.min(FULL_SPEED_BYTES_PER_SECOND)
-            } else {
-                bytes_per_second
-            },
+            bytes_per_second: bytes_per_second.min(most),
             waits_for_cts: matches!(ready, Ready::Uart { handshake: true, .. }),
             opened: Instant::now(),
         })
