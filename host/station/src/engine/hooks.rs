@@ -155,6 +155,7 @@ mod tests {
             finding: None,
             saved_ms: 0,
             board_kind: None,
+            is_identity_checked: true,
         }
     }
 

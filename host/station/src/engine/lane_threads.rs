@@ -19,6 +19,7 @@ use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::lane::Message;
 use crate::outbox::{Sent, awaited, needs_person};
+use crate::record::DeviceSeen;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
 use crate::settings::{Hook, Settings};
@@ -175,6 +176,7 @@ fn shown(saved: Saved) -> Shown {
         finding: record.conclusion.finding,
         saved_ms,
         board_kind: record.board.map(|board| board.kind),
+        is_identity_checked: record.device != DeviceSeen::NotChecked,
     }
 }
 

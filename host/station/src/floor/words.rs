@@ -52,6 +52,8 @@ pub struct Shown {
     pub saved_ms: i64,
     /// What kind of board was judged, such as `hardware` or `mock`, if it said so.
     pub board_kind: Option<String>,
+    /// Whether it could be checked that the board has this serial number.
+    pub is_identity_checked: bool,
 }
 
 impl Shown {

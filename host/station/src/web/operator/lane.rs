@@ -113,6 +113,7 @@ fn says(visit: &Visit, state: &LaneState) -> Markup {
     });
     let error = shown.filter(|_| state.state == Word::Error).map(|shown| of_error(visit, shown));
     let fail = shown.filter(|_| state.state == Word::Fail);
+    let is_unchecked = shown.is_some_and(|shown| state.state == Word::Pass && !shown.is_identity_checked);
     let told: Vec<_> = refused.into_iter().chain(note).chain(error).collect();
     let asked = told.iter().find_map(|(_, asked)| asked.as_ref());
     html! {
@@ -123,6 +124,7 @@ fn says(visit: &Visit, state: &LaneState) -> Markup {
             @let remedy = shown.remedy.as_ref().map(|text| visit.words.remedy(shown.finding.as_ref(), text));
             (why(&headline(visit, shown), remedy.as_ref()))
         }
+        @if is_unchecked { p.why { (visit.say("run.unchecked")) } }
     }
 }
 
@@ -147,11 +149,17 @@ fn why(told: &Sentence, remedy: Option<&Sentence>) -> Markup {
     html! { p.why lang=[told.foreign] title=[remedy.map(|remedy| &remedy.text)] { (plain(&told.text)) } }
 }
 
-/// When the verdict was saved, by the station's clock.
+/// When the verdict was saved, by the station's clock; with the day, because a verdict may stay for days.
 fn saved(visit: &Visit, shown: &Shown) -> Markup {
     let at = clock::local(shown.saved_ms);
-    let words = visit.words.fill("lane.saved", &[("time", &at.strftime("%H:%M").to_string())]);
-    html! { p.saved { time datetime=(format!("{:.3}", at.timestamp())) title=(at.strftime("%Y-%m-%d %H:%M:%S").to_string()) { (words) } } }
+    html! {
+        p.saved {
+            span { (visit.say("lane.saved")) } " "
+            time datetime=(format!("{:.3}", at.timestamp())) title=(at.strftime("%Y-%m-%d %H:%M:%S").to_string()) {
+                (at.strftime("%Y-%m-%d %H:%M").to_string())
+            }
+        }
+    }
 }
 
 /// What the run does; the script puts in what is reported later.

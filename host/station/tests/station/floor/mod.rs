@@ -52,7 +52,19 @@ fn serial(number: usize) -> String {
 fn shown(verdict: Verdict) -> Shown {
     let [run, serial, record_sha256, headline] = ["r", "CA", "h", "w"].map(str::to_owned);
     let (remedy, finding, board_kind) = (None, None, None);
-    Shown { run, serial, verdict, record_sha256, headline, remedy, finding, saved_ms: 0, board_kind }
+    let (saved_ms, is_identity_checked) = (0, true);
+    Shown {
+        run,
+        serial,
+        verdict,
+        record_sha256,
+        headline,
+        remedy,
+        finding,
+        saved_ms,
+        board_kind,
+        is_identity_checked,
+    }
 }
 
 /// A board comes or goes, and nothing else is seen at that look; returns what is to be done in its lane.

@@ -287,8 +287,8 @@ fn the_page_says_plan_station_and_operator_when_it_was_saved_and_the_day() {
     assert!((-1000..600_000).contains(&late), "saved {late} ms behind the run's end");
     let (_, text) = rest.split_once('>').unwrap();
     let shape: String =
-        text.chars().take(11).map(|letter| if letter.is_ascii_digit() { '0' } else { letter }).collect();
-    assert_eq!(shape, "saved 00:00");
+        text.chars().take(16).map(|letter| if letter.is_ascii_digit() { '0' } else { letter }).collect();
+    assert_eq!(shape, "0000-00-00 00:00");
     // One of one: the lower end of Wilson's interval is 1 / (1 + 1.96²).
     assert!(page.contains("1 for the first time · first pass 100.0 % (20.7–100.0) · errors 0"), "{page}");
     operator.post("/scan", &[("text", SERIALS[0])]).until_taken();

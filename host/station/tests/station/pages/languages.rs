@@ -12,6 +12,13 @@ fn run_of(here: &Browser, lane: &str, word: &str, language: &str) -> String {
     run.split_once("<main>").unwrap().1.to_owned()
 }
 
+/// What lane 1 shows.
+fn lane_of(here: &Browser, language: &str) -> String {
+    let page = here.get("/").with("accept-language", language).send().text();
+    let (_, lane) = page.split_once("id=\"lane-1\"").unwrap();
+    lane.split_once("</article>").unwrap().0.to_owned()
+}
+
 fn scan(here: &Browser, serial: &str, lane: &str) {
     here.post("/scan", &[("text", serial), ("lane", lane)]).until_taken();
 }
@@ -37,8 +44,8 @@ fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
     let page = |language: &str| here.get("/").with("accept-language", language).send().text();
     here.get("/").until("lane fail");
     for (language, said) in [
-        ("de", ["Abtastwerten weichen ab", "von Hand", "gesichert ", "Bitstream neu laden"]),
-        ("zh", ["个样值中", "由人停用", "已保存 ", "请重新加载比特流"]),
+        ("de", ["Abtastwerten weichen ab", "von Hand", "<span>gesichert</span>", "Bitstream neu laden"]),
+        ("zh", ["个样值中", "由人停用", "<span>已保存</span>", "请重新加载比特流"]),
     ] {
         let page = page(language);
         for said in said {
@@ -99,11 +106,7 @@ fn the_verdict_on_the_mock_board_is_not_shown_as_that_of_the_board_in_the_lane()
     let here = serving.here();
     scan(&here, SERIALS[0], "1");
     run_of(&here, "1", "pass", "en");
-    let lane = |language: &str| {
-        let page = here.get("/").with("accept-language", language).send().text();
-        let (_, lane) = page.split_once("id=\"lane-1\"").unwrap();
-        lane.split_once("</article>").unwrap().0.to_owned()
-    };
+    let lane = |language: &str| lane_of(&here, language);
     // Now and then a fault is drawn that goes unfound.
     until("a FAIL of the mock board", || {
         let is_there = lane("en").contains("last: FAIL HR:MOCK:1");
@@ -134,9 +137,8 @@ fn a_lane_says_of_a_board_that_a_program_plays_that_no_hardware_was_tested() {
     for (language, said) in
         [("en", "no hardware was tested"), ("de", "keine Hardware geprüft"), ("zh", "未测试硬件")]
     {
-        let page = here.get("/").with("accept-language", language).send().text();
-        let (_, lane) = page.split_once("id=\"lane-1\"").unwrap();
-        assert!(lane.split_once("</article>").unwrap().0.contains(said), "{lane}");
+        let lane = lane_of(&here, language);
+        assert!(lane.contains(said), "{lane}");
     }
 }
 
@@ -147,11 +149,25 @@ fn a_pass_of_a_board_whose_identity_nobody_checked_says_so_in_every_language() {
     let here = serving.here();
     scan(&here, SERIALS[0], "1");
     for (language, unchecked) in
-        [("en", "; identity not checked"), ("de", "; Identität nicht geprüft"), ("zh", "；身份未核对")]
+        [("en", "identity not checked"), ("de", "Identität nicht geprüft"), ("zh", "身份未核对")]
     {
         let run = run_of(&here, "1", "pass", language);
         let (_, headline) = run.split_once("<p class=\"headline\">").unwrap();
         let (headline, _) = headline.split_once("</p>").unwrap();
-        assert!(headline.ends_with(unchecked), "{headline}");
+        let also = if language == "zh" { "；" } else { "; " };
+        assert!(headline.ends_with(&format!("{also}{unchecked}")), "{headline}");
+        let lane = lane_of(&here, language);
+        assert!(lane.contains(&format!("<p class=\"why\">{unchecked}</p>")), "{lane}");
     }
+}
+
+#[test]
+fn a_pass_of_a_board_whose_identity_was_checked_says_nothing_of_it() {
+    let station = Station::private(1).where_instead("plan.toml", "not-checked", "if-present");
+    let serving = station.serve();
+    let here = serving.here();
+    scan(&here, SERIALS[0], "1");
+    here.get("/").until("lane pass");
+    let lane = lane_of(&here, "en");
+    assert!(!lane.contains("identity"), "{lane}");
 }

@@ -142,7 +142,7 @@ const OVER: &str = "(() => {
         const more = state === 'running' ? '<p class=doing>rows</p><progress></progress>' : `<p class=why>${long}</p>`;
         lane.innerHTML = before + (['ready', 'pass'].includes(state) ? '' : more);
         lane.querySelector('.acts').innerHTML = '<form class=act><button id=out>out</button></form>';
-        const saved = ['ready', 'running'].includes(state) ? '' : '<p class=saved>gesichert 14:02</p>';
+        const saved = ['ready', 'running'].includes(state) ? '' : '<p class=saved><span>gesichert</span> <time>2026-11-30 14:02</time></p>';
         lane.querySelector('header').insertAdjacentHTML('beforeend', saved);
         lane.querySelector('.word span').textContent = state.toUpperCase();
         const serial = lane.querySelector('.serial');

@@ -40,7 +40,7 @@ const CUT: &str = "(() => {
     const found = [];
     for (const lane of document.querySelectorAll('.lane')) {
         const say = what => found.push(`${lane.dataset.lane} ${lane.className}: ${what}`);
-        for (const part of lane.querySelectorAll('.word, .serial, .does, .asks')) {
+        for (const part of lane.querySelectorAll('.word, .serial, .does, .asks, .pass > .why')) {
             const box = part.getBoundingClientRect(), end = lane.getBoundingClientRect().top + lane.clientTop + lane.clientHeight;
             const isSaid = part.matches('.asks') || !lane.querySelector('.asks, .doing');
             const isCut = part.matches('.does, .asks') && part.scrollHeight > part.clientHeight + 1;
