@@ -13,6 +13,8 @@ const UNPRESSED = { is_taken: false, said: station.unpressed };
 const LEFT = "left";
 // In milliseconds: longer than the station accepts anything after the beat that it names.
 const PATIENT = 10000;
+// How many of the lanes' news can be read again.
+const KEPT = 20;
 // What each lane showed last.
 const shown = new Map();
 // The lane that the next scan is for, until when, and what ends it.
@@ -120,9 +122,17 @@ function lane(event, isNews) {
   if (isAsBefore) return;
   if (notices.delete(event.lane)) notice();
   if (!isNews) return;
-  put("said", event.said);
+  say(event.said);
   play(event.state);
   todayIsStale ||= Boolean(event.verdict);
+}
+
+// What one lane has to say does not take the place of what another one said.
+function say(text) {
+  const log = by("said"), line = document.createElement("p");
+  line.textContent = text;
+  log.append(line);
+  if (log.childElementCount > KEPT) log.firstElementChild.remove();
 }
 
 const notice = () => put("notice", [...notices.values()].join("\n"));
@@ -147,7 +157,8 @@ async function today() {
 
 const HEAR = {
   snapshot: ({ lanes, hooks }) => {
-    lanes.forEach((one) => lane(one, false));
+    // After a gap this is where the page hears of a verdict; a page that has just come shows nothing new.
+    lanes.forEach((one) => lane(one, shown.has(one.lane)));
     notices.clear();
     hooks.forEach(hook);
     notice();

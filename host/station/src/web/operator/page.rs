@@ -53,7 +53,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Resp
             noscript { iframe src="/still" title=(visit.say("nav.lanes")) {} }
             (floor(&visit, &now))
             footer #today data-changes[changes] { (or_why(today)) }
-            div #said .heard role="log" aria-live="assertive" {}
+            div #said .heard role="log" {}
         }
     };
     Ok(Page { here: Here::Lanes, title: visit.say("nav.lanes"), head, content }.answer(&visit))

@@ -6,7 +6,7 @@ use nix::sys::signal::Signal;
 use serde_json::json;
 
 use super::chromium::Chromium;
-use crate::pages::station::{SERIALS, Station};
+use crate::pages::station::{SERIALS, Serving, Station};
 
 /// The most milliseconds from the last beat until the page says that it is not live, apart from delays of a busy machine.
 pub(super) const NOT_LIVE: f64 = 3000.0;
@@ -193,16 +193,22 @@ const HEAR: &str = "
 fn a_verdict_is_told_once() {
     let station = Station::private(1);
     let serving = station.serve();
-    let mut page = Chromium::open("about:blank");
-    page.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": HEAR }));
-    page.go(&format!("http://127.0.0.1:{}/", serving.port));
-    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    let mut page = heard(&serving);
     page.wait("document.querySelector('.lane.ready') !== null");
     page.scan(SERIALS[0], "Enter", Duration::ZERO);
     page.wait("window.passed !== undefined && window.tones === 2");
     let again = |run: &str| {
         format!(
             "(() => {{
+/// A page of the lanes, with what [`HEAR`] records.
+fn heard(serving: &Serving) -> Chromium {
+    let mut page = Chromium::open("about:blank");
+    page.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": HEAR }));
+    page.go(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    page
+}
+
                 document.getElementById('said').textContent = '';
                 const [lane, before] = [document.getElementById('lane-1'), window.tones];
                 lane.querySelector('.serial a').focus();
@@ -232,6 +238,58 @@ fn each_hook_that_failed_is_told_with_its_unit_until_its_lane_has_something_else
     let told = |units: &[&str]| {
         let told: Vec<_> = units.iter().map(|unit| format!("Lane {unit}: the hook false failed")).collect();
         let lines = "document.getElementById('notice').textContent.split('\\n').filter(Boolean)";
+/// A page that misses news is sent a snapshot, in which all lanes are.
+#[test]
+fn a_verdict_is_told_that_came_while_the_page_heard_nothing() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = heard(&serving);
+    page.wait("document.querySelector('.lane.ready') !== null");
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("window.passed !== undefined && window.tones === 2");
+    let snapshot = |run: &str| {
+        format!(
+            "(() => {{
+                const before = [window.tones, document.getElementById('said').childElementCount];
+                const lanes = [{{...JSON.parse(window.passed), {run}}}];
+                const data = JSON.stringify({{mark: document.getElementById('station').dataset.mark, lanes, hooks: []}});
+                source.dispatchEvent(new MessageEvent('snapshot', {{data, lastEventId: `${{window.last}}`}}));
+                return [window.tones - before[0], document.getElementById('said').childElementCount - before[1]];
+            }})()"
+        )
+    };
+    assert_eq!(page.evaluate(&snapshot("")), json!([0, 0]), "it was told already");
+    assert_eq!(page.evaluate(&snapshot("run: 'another'")), json!([2, 1]));
+    page.go(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live' && document.querySelector('.lane.pass') !== null");
+    let told = "[window.tones, document.getElementById('said').textContent]";
+    assert_eq!(page.evaluate(told), json!([0, ""]), "whoever opens the page sees it");
+}
+
+/// What one lane says is still there when another lane has something to say, as ARIA asks of a log; not for ever.
+#[test]
+fn what_one_lane_says_can_be_read_after_another_has_said_something() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = heard(&serving);
+    page.wait("document.querySelector('.lane.ready') !== null");
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("window.passed !== undefined && window.tones === 2");
+    let log = "[...document.getElementById('said').children].map(line => line.textContent)";
+    let pass = format!("Lane 1: PASS {}", SERIALS[0]);
+    let said = page.evaluate(log);
+    let said: Vec<_> = said.as_array().unwrap().iter().filter_map(|line| line.as_str()).collect();
+    assert!(said.len() > 1 && said.last() == Some(&pass.as_str()), "{said:?}");
+    let more = "for (let number = 1; number <= 30; number += 1) {
+            const data = JSON.stringify({...JSON.parse(window.passed), run: `r${number}`, said: `news ${number}`});
+            source.dispatchEvent(new MessageEvent('lane', {data, lastEventId: `${window.last + 1}`}));
+        }";
+    let kept: Vec<_> = (11..=30).map(|number| format!("news {number}")).collect();
+    assert_eq!(page.evaluate(&format!("{more} {log}")), json!(kept));
+    let region = "[document.getElementById('said').role, document.getElementById('said').ariaLive]";
+    assert_eq!(page.evaluate(region), json!(["log", null]));
+}
+
         format!(
             "(told => {lines}.length === told.length && told.every(of => {lines}.some(line => line.startsWith(of))))({})",
             json!(told)
