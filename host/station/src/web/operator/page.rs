@@ -124,7 +124,7 @@ fn scan_box(visit: &Visit, now: &Now, answer: Option<&ScanReply>) -> Markup {
 
 fn live_lamp(visit: &Visit) -> Markup {
     html! {
-        span #live .live role="status" { span #lamp { (visit.say("live.page")) } " " time #clock { (clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string()) } }
+        span #live .live { span #lamp role="status" { (visit.say("live.page")) } " " time #clock { (clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string()) } }
     }
 }
 

@@ -121,6 +121,21 @@ fn a_screen_reader_says_which_lane_the_next_scan_is_for() {
     assert_eq!(page.evaluate(HEARD), heard(true, false));
 }
 
+/// A live region is read aloud whenever it changes, and the clock changes every second.
+#[test]
+fn a_screen_reader_is_told_that_the_page_is_live_and_not_what_time_it_is() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    let said = |id: &str| {
+        format!(
+            "document.getElementById('{id}').closest('[role=status], [role=alert], [role=log], [aria-live]')?.id ?? ''"
+        )
+    };
+    assert_eq!(page.evaluate(&said("clock")), json!(""));
+    assert_eq!(page.evaluate(&said("lamp")), json!("lamp"));
+}
+
 #[test]
 fn without_a_script_nothing_that_is_typed_is_thrown_away() {
     let station = Station::private(2);
