@@ -148,7 +148,10 @@ async function today() {
   if (!todayIsStale) return;
   todayIsStale = false;
   const counted = await fetch("/today").catch(() => undefined);
-  if (!counted?.ok) return;
+  if (!counted?.ok) {
+    todayIsStale = true;
+    return;
+  }
   const footer = by("today"), isFocused = footer.contains(document.activeElement);
   footer.innerHTML = await counted.text();
   todayIsStale ||= Boolean(footer.querySelector("[data-again]"));

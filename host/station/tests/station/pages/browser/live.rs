@@ -85,6 +85,21 @@ fn the_day_is_counted_anew_when_the_clock_begins_again() {
     page.wait(&format!("{counted} > 1"));
 }
 
+#[test]
+fn the_day_is_asked_for_until_it_was_counted() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    let fails = "window.asked = 0; const known = window.fetch;
+        window.fetch = (address, ...of) => address === '/today' ? (window.asked += 1, window.asked < 2 ? Promise.reject(new TypeError('away'))
+            : Promise.resolve(new Response(window.asked < 3 ? '' : 'counted', {status: window.asked < 3 ? 502 : 200}))) : known(address, ...of);
+        true";
+    page.evaluate(fails);
+    page.evaluate("document.getElementById('clock').textContent = '23:59:60'");
+    page.wait("document.getElementById('today').textContent === 'counted'");
+    assert_eq!(page.evaluate("window.asked"), json!(3));
+}
+
 /// Ends the station of a page and starts it again; returns how many milliseconds after the last beat the page was not live, and how
 /// many after the start live again.
 fn without_the_station() -> [f64; 2] {
@@ -188,6 +203,15 @@ const HEAR: &str = "
         }
     };";
 
+/// A page of the lanes, with what [`HEAR`] records.
+fn heard(serving: &Serving) -> Chromium {
+    let mut page = Chromium::open("about:blank");
+    page.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": HEAR }));
+    page.go(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    page
+}
+
 /// The state is sent anew when a board is unplugged, and when the next one is plugged in.
 #[test]
 fn a_verdict_is_told_once() {
@@ -200,15 +224,6 @@ fn a_verdict_is_told_once() {
     let again = |run: &str| {
         format!(
             "(() => {{
-/// A page of the lanes, with what [`HEAR`] records.
-fn heard(serving: &Serving) -> Chromium {
-    let mut page = Chromium::open("about:blank");
-    page.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": HEAR }));
-    page.go(&format!("http://127.0.0.1:{}/", serving.port));
-    page.wait("document.getElementById('lamp')?.textContent === 'live'");
-    page
-}
-
                 document.getElementById('said').textContent = '';
                 const [lane, before] = [document.getElementById('lane-1'), window.tones];
                 lane.querySelector('.serial a').focus();
@@ -223,21 +238,6 @@ fn heard(serving: &Serving) -> Chromium {
     assert_eq!(page.evaluate(&again("run: 'another'")), json!([true, 2, true, "run-1"]), "the control");
 }
 
-/// The hook is killed long after its verdict, and by then another board may be in the lane.
-#[test]
-fn each_hook_that_failed_is_told_with_its_unit_until_its_lane_has_something_else_to_say() {
-    let more = "[web]\nlisten = \"127.0.0.1:0\"\n[[on-pass]]\nprogram = \"false\"";
-    let station = Station::with(2, more);
-    let serving = station.serve();
-    let mut page = Chromium::live(&serving);
-    let scan = |page: &mut Chromium, lane: &str, serial: &str| {
-        page.wait(&format!("document.querySelector('#lane-{lane}.ready, #lane-{lane}.pass') !== null"));
-        page.scan(&format!("HR:LANE:{lane}"), "Enter", Duration::ZERO);
-        page.scan(serial, "Enter", Duration::ZERO);
-    };
-    let told = |units: &[&str]| {
-        let told: Vec<_> = units.iter().map(|unit| format!("Lane {unit}: the hook false failed")).collect();
-        let lines = "document.getElementById('notice').textContent.split('\\n').filter(Boolean)";
 /// A page that misses news is sent a snapshot, in which all lanes are.
 #[test]
 fn a_verdict_is_told_that_came_while_the_page_heard_nothing() {
@@ -290,6 +290,21 @@ fn what_one_lane_says_can_be_read_after_another_has_said_something() {
     assert_eq!(page.evaluate(region), json!(["log", null]));
 }
 
+/// The hook is killed long after its verdict, and by then another board may be in the lane.
+#[test]
+fn each_hook_that_failed_is_told_with_its_unit_until_its_lane_has_something_else_to_say() {
+    let more = "[web]\nlisten = \"127.0.0.1:0\"\n[[on-pass]]\nprogram = \"false\"";
+    let station = Station::with(2, more);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    let scan = |page: &mut Chromium, lane: &str, serial: &str| {
+        page.wait(&format!("document.querySelector('#lane-{lane}.ready, #lane-{lane}.pass') !== null"));
+        page.scan(&format!("HR:LANE:{lane}"), "Enter", Duration::ZERO);
+        page.scan(serial, "Enter", Duration::ZERO);
+    };
+    let told = |units: &[&str]| {
+        let told: Vec<_> = units.iter().map(|unit| format!("Lane {unit}: the hook false failed")).collect();
+        let lines = "document.getElementById('notice').textContent.split('\\n').filter(Boolean)";
         format!(
             "(told => {lines}.length === told.length && told.every(of => {lines}.some(line => line.startsWith(of))))({})",
             json!(told)
