@@ -68,7 +68,10 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
     let mut response = if app.access().is_open() && is_forwarded(request.headers()) {
         Trouble::new(&visit, StatusCode::MISDIRECTED_REQUEST, visit.say("trouble.proxied")).into_response()
     } else if is_ours {
-        let late = || Trouble::new(&visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late"));
+        // What is late is the station's answer, not the request.
+        let is_act = request.method() == Method::POST;
+        let said = if is_act { visit.say("trouble.late_act") } else { visit.say("trouble.late") };
+        let late = || Trouble::new(&visit, StatusCode::SERVICE_UNAVAILABLE, said);
         time::timeout(PATIENCE, next.run(request)).await.unwrap_or_else(|_| late().into_response())
     } else {
         // A foreign page whose name was made to resolve to this address can read this, so it says little.

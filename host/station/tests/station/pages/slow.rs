@@ -1,11 +1,14 @@
 //! Requests that arrive slowly, or not at all.
 
+use std::fs;
 use std::io::{Read as _, Write as _};
+use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::http::connected;
 use super::station::{SERIALS, Station};
+use crate::common::held_up;
 
 /// What is answered to the first part of `text`, and to `rest` after it.
 fn answered(port: u16, first: &str, rest: &str) -> String {
@@ -16,6 +19,26 @@ fn answered(port: u16, first: &str, rest: &str) -> String {
     // Whoever ends a connection to which something is still sent resets it.
     let _ = stream.read_to_end(&mut answer);
     String::from_utf8_lossy(&answer).lines().next().unwrap_or_default().to_owned()
+}
+
+/// Nothing of these requests is missing: the station cannot read who is logged in, as from a network share that hangs.
+#[test]
+fn a_station_that_is_late_itself_says_so_and_that_an_act_may_be_done_all_the_same() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let operator = serving.operator();
+    let path = station.path("users.toml");
+    fs::remove_file(&path).unwrap();
+    assert!(Command::new("mkfifo").args(["-m", "600"]).arg(&path).status().unwrap().success());
+    let asked =
+        [(operator.get("/"), "Try again"), (operator.post("/lanes/1/abort", &[]), "may have been done")];
+    let asked = asked.map(|(request, said)| (thread::spawn(move || request.send()), said));
+    let held = held_up(&path);
+    for (answer, said) in asked {
+        let answer = answer.join().unwrap();
+        assert!(answer.status == 503 && answer.text().contains(said), "{answer:?}");
+    }
+    drop(held);
 }
 
 /// docs/station-lanes.md: a request has 10 s for its head, and a form 10 s. Nothing else ends either of them before 30 s.
