@@ -10,6 +10,7 @@ use maud::{Markup, html};
 use serde::Deserialize;
 
 use super::access::{Claimant, Identified};
+use super::fields::Fields;
 use super::history::show;
 use super::language::{self, Sentence};
 use super::layout::{Here, Page};
@@ -34,8 +35,15 @@ pub(super) fn routes() -> Vec<Route> {
     ]
 }
 
-async fn page(visit: Visit) -> Response {
-    asked(&visit, None, "").answer(&visit)
+/// Where a login leads.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Wanted {
+    page: String,
+}
+
+async fn page(visit: Visit, Fields(Wanted { page }): Fields<Wanted>) -> Response {
+    asked(&visit, None, &page).answer(&visit)
 }
 
 /// The page that asks for a badge, below why the last one or an act was refused; a login leads to the address `page`.

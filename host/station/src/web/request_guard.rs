@@ -192,9 +192,15 @@ fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, RefusedReq
         .get(header::ACCEPT)
         .is_some_and(|accept| accept.to_str().is_ok_and(|accept| accept.contains("text/html")));
     match visit.user {
-        None if wants_page && visit.untold.is_none() => Err(Box::new(Redirect::to("/login").into_response())),
+        None if wants_page && visit.untold.is_none() => Err(Box::new(to_login(asked(&request)))),
         _ => Err(Box::new(Trouble::barred(visit).into_response())),
     }
+/// The way to the login, which leads back to what was asked for.
+fn to_login(asked: &str) -> Response {
+    let page: String = form_urlencoded::byte_serialize(asked.as_bytes()).collect();
+    Redirect::to(&format!("/login?page={page}")).into_response()
+}
+
 }
 
 /// Checks an act: it comes from a page of the station, made for this browser, by somebody who may do it.

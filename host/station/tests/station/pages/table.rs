@@ -118,8 +118,20 @@ fn refused_from_elsewhere(right: &Request, foreign: String, what: &str) {
 fn a_page_asked_for_by_a_stranger_leads_to_the_login() {
     let station = Station::public(1);
     let serving = station.serve();
-    let answer = serving.browser(PUBLIC).get("/").with("accept", "text/html").send();
-    assert_eq!((answer.status, answer.headers["location"].as_str()), (303, "/login"));
+    for (asked, login) in [
+        ("/", "/login?page=%2F"),
+        ("/unit?serial=CA01&plan=a+b", "/login?page=%2Funit%3Fserial%3DCA01%26plan%3Da%2Bb"),
+    ] {
+        let mut browser = serving.browser(PUBLIC);
+        let answer = browser.get(asked).with("accept", "text/html").send();
+        assert_eq!((answer.status, answer.header("location")), (303, Some(login)));
+        let form = browser.get(login).send();
+        browser.learn(&form);
+        let page = format!("name=\"page\" value=\"{}\"", asked.replace('&', "&amp;"));
+        assert!(form.text().contains(&page), "{}", form.text());
+        let led = browser.post("/login", &[("page", asked), ("badge", "A-0017")]).send();
+        assert_eq!((led.status, led.header("location")), (303, Some(asked)));
+    }
 }
 
 /// A login page may be older than the browser's cookie, and a scanner cannot load it again.
