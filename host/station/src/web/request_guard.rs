@@ -162,9 +162,7 @@ async fn machine(
         Machine::Waits(wait) => Err(troubled(Trouble::waits(&stranger, wait))),
         Machine::Unknown => {
             let visit = told(stranger, "token refused", peer.to_string()).await?;
-            let mut response = refused(&visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login"));
-            response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
-            Err(response)
+            Err(refused(&visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")))
         }
         Machine::Known { name, is_noted } => {
             let user = Some(User { name: name.clone(), who: Who::Reader });
@@ -195,12 +193,12 @@ fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, RefusedReq
         None if wants_page && visit.untold.is_none() => Err(Box::new(to_login(asked(&request)))),
         _ => Err(Box::new(Trouble::barred(visit).into_response())),
     }
+}
+
 /// The way to the login, which leads back to what was asked for.
 fn to_login(asked: &str) -> Response {
     let page: String = form_urlencoded::byte_serialize(asked.as_bytes()).collect();
     Redirect::to(&format!("/login?page={page}")).into_response()
-}
-
 }
 
 /// Checks an act: it comes from a page of the station, made for this browser, by somebody who may do it.

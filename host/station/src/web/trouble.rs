@@ -3,8 +3,8 @@
 use std::fmt::Display;
 use std::time::Duration;
 
-use axum::http::StatusCode;
-use axum::http::header::CONTENT_TYPE;
+use axum::http::header::{CONTENT_TYPE, WWW_AUTHENTICATE};
+use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use maud::{Markup, html};
 use serde_json::json;
@@ -113,6 +113,18 @@ impl Trouble {
 
 impl IntoResponse for Trouble {
     fn into_response(self) -> Response {
+        let is_stranger = self.status == StatusCode::UNAUTHORIZED;
+        let mut response = self.page();
+        if is_stranger {
+            // RFC 9110, section 15.5.2, demands a challenge. Browsers ask nobody anything for this one.
+            response.headers_mut().insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+        }
+        response
+    }
+}
+
+impl Trouble {
+    fn page(self) -> Response {
         let Self { status, visit, told, is_stale, login } = self;
         if visit.is_script {
             let text = json!({ "is_taken": false, "said": told.text, "is_stale": is_stale }).to_string();

@@ -87,7 +87,10 @@ fn who_may_not_is_refused_at_every_route() {
         let other = right.clone().with("host", "evil.example").with("origin", "https://evil.example");
         assert_eq!(status(&other), 421, "{what} under another name");
         if who > Who::Anyone {
-            assert_eq!(status(&stranger), 401, "{what} by a stranger");
+            let refused = stranger.send();
+            // RFC 9110, section 15.5.2: with a challenge, so that a program knows that a token would do.
+            let challenged = (refused.status, refused.header("www-authenticate"));
+            assert_eq!(challenged, (401, Some("Bearer")), "{what} by a stranger");
         }
         if who == Who::Engineer {
             assert_eq!(status(&operator), 403, "{what} by an operator");
