@@ -375,3 +375,6 @@ fn open_run(row: &Found<'_>) -> Result<OpenRun, DatabaseError> {
     };
     Ok(OpenRun { run, plan_sha256: row.get(6)?, plan: [row.get(12)?, row.get(13)?, row.get(14)?] })
 }
+
+#[cfg(test)]
+mod tests;
