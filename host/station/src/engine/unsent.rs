@@ -10,11 +10,9 @@ use crate::store::{Folder, SINK_OF_PLANT, Snapshot};
 pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     let plant = settings.plant.as_ref()?;
     let most = plant.most_unsent;
-    let results = match Snapshot::take(folder).and_then(|now| now.unsent()) {
-        // What other sinks are sent is kept by the plant, too.
-        Ok(unsent) => {
-            unsent.iter().find(|unsent| unsent.sink == SINK_OF_PLANT).map_or(0, |plant| plant.results)
-        }
+    // What other sinks are sent is kept by the plant, too.
+    let results = match Snapshot::take(folder).and_then(|now| now.backlog(SINK_OF_PLANT)) {
+        Ok(left) => left.results,
         Err(error) => return Some(Said::of(&error)),
     };
     if results > most {

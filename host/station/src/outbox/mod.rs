@@ -9,6 +9,7 @@
 
 mod back_off;
 mod plant;
+mod quiet;
 mod sent;
 mod sinks;
 mod standing;
@@ -29,9 +30,9 @@ use crate::clock;
 use crate::guard::guarded;
 use crate::said::Said;
 use crate::store::{
-    Entry, Folder, LONGEST_WAIT_MS, Parcel, SharedStore, Snapshot, StoreError, Tried, Unsent,
+    Backlog, Entry, Folder, LONGEST_WAIT_MS, Parcel, SharedStore, Snapshot, StoreError, Tried,
 };
-use standing::Backlog;
+use quiet::Quiet;
 
 /// How often to check whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
@@ -236,13 +237,7 @@ pub enum OutboxError {
 }
 
 fn left(store: &SharedStore, sink: &dyn Sink) -> Result<Backlog, StoreError> {
-    let unsent = Snapshot::take(&folder(store))?.unsent()?;
-    let ours = unsent.into_iter().find(|unsent| unsent.sink == sink.name());
-    Ok(ours.map_or_else(Backlog::default, |Unsent { entries, dead, said, .. }| Backlog {
-        entries,
-        dead,
-        was_tried: said.is_some(),
-    }))
+    Snapshot::take(&folder(store))?.backlog(sink.name())
 }
 
 fn beat(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) {
@@ -278,16 +273,32 @@ fn wait_after(round: Round, vain: &mut u32) -> Duration {
     if round.sent > 0 { Duration::ZERO } else { LOOK }
 }
 
+/// A round, unless nothing can be due yet.
+fn looked(
+    store: &SharedStore,
+    sink: &mut dyn Sink,
+    standing: &mut Standing,
+    quiet: &mut Option<Quiet>,
+) -> Result<Round, StoreError> {
+    if quiet.as_ref().is_some_and(|quiet| quiet.lasts(store)) {
+        return Ok(Round::default());
+    }
+    let round = round(store, sink, standing)?;
+    *quiet = if round == Round::default() { Some(Quiet::of(store, sink.name())?) } else { None };
+    Ok(round)
+}
+
 /// Sends until the outbox is closed.
 fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
     let (mut vain, mut worked, mut beaten) = (0, Instant::now(), None::<Instant>);
-    let mut standing = Standing::default();
+    let (mut standing, mut quiet) = (Standing::default(), None::<Quiet>);
     loop {
         if beaten.is_none_or(|beaten| beaten.elapsed() > BEAT) {
             beaten = Some(Instant::now());
             beat(store, &mut *sink, &mut standing);
         }
-        let round = round(store, &mut *sink, &mut standing).unwrap_or_else(|error| {
+        let looked = looked(store, &mut *sink, &mut standing, &mut quiet);
+        let round = looked.unwrap_or_else(|error| {
             tracing::error!("what is to be sent on stays here: {}", Said::of(&error));
             Round { is_away: true, ..Round::default() }
         });

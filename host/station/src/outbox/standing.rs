@@ -5,7 +5,7 @@ use halfrow::words::{count, verb};
 
 use super::Undelivered;
 use crate::said::Said;
-use crate::store::{Entry, Kind, SINK_OF_PLANT, StoreError};
+use crate::store::{Backlog, Entry, Kind, SINK_OF_PLANT, StoreError};
 
 /// The state of a sink, as far as the log has reported it.
 #[derive(Clone, Debug, Default)]
@@ -16,17 +16,6 @@ pub struct Standing {
     is_behind: bool,
     /// How much it did not have when that was read last.
     pub(super) left: Option<Backlog>,
-}
-
-/// How much a sink does not have.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Backlog {
-    /// Entries.
-    pub(super) entries: u32,
-    /// Those of them that wait for a person.
-    pub(super) dead: u32,
-    /// Whether any of the others was tried in vain.
-    pub(super) was_tried: bool,
 }
 
 impl Standing {
@@ -66,7 +55,7 @@ impl Standing {
             return;
         }
         // If that cannot be read now, it is tried after the next entry.
-        let Ok(Backlog { entries, dead, was_tried }) = left() else { return };
+        let Ok(Backlog { entries, dead, was_tried, .. }) = left() else { return };
         if self.away.take().is_some() {
             let waited = u64::from(entries - dead) + sent as u64;
             tracing::warn!("{} answers again: {waited} waited", called(sink));

@@ -51,7 +51,7 @@ pub use folder::Folder;
 pub(crate) use folder::{ASIDE, LOCK};
 use generation::{Log, Opened};
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
-pub(crate) use outbox::{DEAD_SHOWN, FIRST_WAIT_MS, LONGEST_WAIT_MS};
+pub(crate) use outbox::{Backlog, DEAD_SHOWN, FIRST_WAIT_MS, LONGEST_WAIT_MS};
 pub use plant::{
     Claim, Introduction, Job, JobState, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError,
     PlantLink, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
@@ -122,6 +122,8 @@ pub struct Store {
     sinks: Arc<[String]>,
     /// The plant's clock, if it was heard since the start.
     plant_clock: Option<HeardClock>,
+    /// How many changes were begun.
+    changes: u64,
     /// The file that the writer writes to. Another one may have its name by now.
     opened: Opened,
     lock: File,
@@ -166,6 +168,7 @@ impl Store {
             admitted: BTreeMap::new(),
             sinks: Arc::default(),
             plant_clock: None,
+            changes: 0,
             opened,
             lock,
         })
@@ -310,6 +313,11 @@ impl Store {
         self.read("to tell its open runs", |from| from.all(statements::OPEN_RUNS, &[], open_run))
     }
 
+    /// Another number after each change: whoever has found something out need not look again while it is the same.
+    pub(crate) fn changes(&self) -> u64 {
+        self.changes
+    }
+
     /// What `read` finds.
     fn read<T>(
         &mut self,
@@ -327,6 +335,7 @@ impl Store {
         change: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
     ) -> Result<T, StoreError> {
         self.refuse_replaced()?;
+        self.changes += 1;
         let changed = self.read(doing, |writer| writer.transaction(change))?;
         self.refuse_replaced()?;
         if let Err(error) = self.opened.changed(&self.folder, &self.lock, &mut *self.writer) {

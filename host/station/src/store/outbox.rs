@@ -4,6 +4,7 @@
 mod acts;
 mod unsent;
 
+pub(crate) use unsent::Backlog;
 pub(crate) use unsent::DEAD_SHOWN;
 pub use unsent::{Dead, Unsent};
 
@@ -226,6 +227,16 @@ impl Folder {
         let latest_ms = now_ms.saturating_add(longest_ms);
         self.read("to tell what is to be sent", |from| {
             from.all(sql::OUTBOX_DUE, values![sink, now_ms, latest_ms], |row| entry(row, 0))
+        })
+    }
+
+    /// When the first entry for `sink` is due that does not wait for a person, in milliseconds since 1970, UTC.
+    ///
+    /// # Errors
+    /// Like [`Self::due`].
+    pub(crate) fn next_due(&self, sink: &str) -> Result<Option<i64>, StoreError> {
+        self.read("to tell when something is to be sent", |from| {
+            from.one(sql::OUTBOX_NEXT, values![sink], |row| row.get(0))
         })
     }
 

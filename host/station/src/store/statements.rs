@@ -132,6 +132,8 @@ statements! {
     pub(super) UNENTERED = "unentered.sql";
     pub(super) ALL_TO_OUTBOX = "all-to-outbox.sql";
     pub(super) OUTBOX_DUE = "outbox-due.sql";
+    pub(super) OUTBOX_NEXT = "outbox-next.sql";
+    pub(super) OUTBOX_LEFT = "outbox-left.sql";
     pub(super) OUTBOX_AT_ONCE = "outbox-at-once.sql";
     pub(super) OUTBOX_STATE = "outbox-state.sql";
     pub(super) OUTBOX_DONE = "outbox-done.sql";

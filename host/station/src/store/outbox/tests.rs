@@ -1,5 +1,14 @@
+use super::super::database::Value;
 use super::super::{Deed, Snapshot};
 use super::*;
+
+/// How the database answers `text`.
+fn plan(folder: &Folder, text: &str, of: &[Value<'_>]) -> Vec<String> {
+    let plan = folder.read("a plan", |from| {
+        from.all(&format!("EXPLAIN QUERY PLAN {text}"), of, |row| row.get::<String>(3))
+    });
+    plan.unwrap()
+}
 
 /// Failed attempts at times that the test chooses, with the waits of the outbox itself.
 #[test]
@@ -35,11 +44,35 @@ fn what_is_due_is_found_without_a_look_at_what_waits_for_a_person() {
     let folder = tempfile::tempdir().unwrap();
     let folder = Folder::new(folder.path());
     drop(Store::open(&folder).unwrap());
-    let plan = folder.read("a plan", |from| {
-        let text = format!("EXPLAIN QUERY PLAN {}", sql::OUTBOX_DUE);
-        from.all(&text, values!["mes", 0_i64, 0_i64], |row| row.get::<String>(3))
-    });
-    assert_eq!(plan.unwrap(), ["SEARCH outbox USING INDEX outbox_due (sink=?)"]);
+    let due = plan(&folder, sql::OUTBOX_DUE, values!["mes", 0_i64, 0_i64]);
+    assert_eq!(due, ["SEARCH outbox USING INDEX outbox_due (sink=?)"]);
+    assert_eq!(plan(&folder, sql::OUTBOX_NEXT, values!["mes"]), due);
+}
+
+/// Before every run, on the engine's only thread; another sink may have been away for a year.
+#[test]
+fn what_one_sink_does_not_have_is_counted_without_a_look_at_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut store = Store::open(&Folder::new(folder.path())).unwrap();
+    store.sends_to(["mes", "share"].map(str::to_owned).to_vec()).unwrap();
+    for number in ["1", "2", "3"] {
+        store.note(Deed { operator: "weber", act: "scan", subject: "1", detail: number }).unwrap();
+    }
+    let said = || Said::uncoded("no".to_owned());
+    let mut of_mes = store.folder().due("mes", clock::now_ms(), i64::MAX).unwrap();
+    let next_ms = clock::now_ms() + 1_000;
+    let tried = [
+        (of_mes.remove(0), Tried::Dead { said: said() }),
+        (of_mes.remove(0), Tried::Again { next_ms, said: said() }),
+    ];
+    store.tried("mes", &tried, clock::now_ms()).unwrap();
+    let now = Snapshot::take(&Folder::new(folder.path())).unwrap();
+    let of = |entries, dead, was_tried| Backlog { entries, results: 0, dead, was_tried };
+    assert_eq!(now.backlog("mes").unwrap(), of(3, 1, true));
+    assert_eq!(now.backlog("share").unwrap(), of(3, 0, false));
+    assert_eq!(now.backlog("nobody").unwrap(), Backlog::default());
+    let asked = plan(store.folder(), sql::OUTBOX_LEFT, values!["mes"]);
+    assert_eq!(asked, ["SEARCH outbox USING INDEX outbox_open (sink=?)"]);
 }
 
 /// Kept as by an earlier program, without a code.

@@ -29,6 +29,19 @@ pub struct Unsent {
     pub said: Option<Said>,
 }
 
+/// How much a sink does not have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Backlog {
+    /// Entries.
+    pub(crate) entries: u32,
+    /// Those of them that are runs and waivers, not lines of the audit.
+    pub(crate) results: u32,
+    /// Those of them that wait for a person.
+    pub(crate) dead: u32,
+    /// Whether any of the others was tried in vain.
+    pub(crate) was_tried: bool,
+}
+
 /// An entry that waits for a person.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Dead {
@@ -58,7 +71,20 @@ impl Snapshot {
         })
     }
 
-    /// The same, with what will be entered for these sinks when it is sent: what was kept by a program that knew no sinks.
+    /// How much this sink does not have, without a look at what others do not have.
+    ///
+    /// # Errors
+    /// Like [`Self::unsent`].
+    pub(crate) fn backlog(&self, sink: &str) -> Result<Backlog, StoreError> {
+        let counted =
+            self.rows("to tell how much is to be sent", sql::OUTBOX_LEFT, values![sink], |row| {
+                let (entries, results, dead) = (row.get(0)?, row.get(1)?, row.get(2)?);
+                Ok(Backlog { entries, results, dead, was_tried: row.get::<u32>(3)? > 0 })
+            })?;
+        Ok(counted.into_iter().next().unwrap_or_default())
+    }
+
+    /// The same as [`Self::unsent`], with what will be entered for these sinks when it is sent: what was kept by a program that knew no sinks.
     ///
     /// # Errors
     /// Like [`Self::unsent`].
