@@ -6,7 +6,7 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use halfrow::files::written_aside::{WriteAsideError, clear_older, sync_folder, write_aside};
+use halfrow::files::written_aside::{Aside, WriteAsideError, clear_older, sync_folder};
 
 use super::SinkError;
 use super::letter::letter;
@@ -36,19 +36,23 @@ impl FolderSink {
             self.is_clear = true;
         }
         let path = self.folder.join(letter.id + letter.ending);
-        match write_aside(&path, false, |file| file.write_all(&letter.bytes)) {
+        let written = Aside::written(&path, false, |file| file.write_all(&letter.bytes));
+        match written.and_then(Aside::rename_into_place) {
             Err(WriteAsideError::Exists { .. }) => {
                 is_as(&path, &letter.bytes)?;
-                // A program that was killed may have left it without bringing its name to the disk.
-                let synced = File::open(&path).and_then(|file| file.sync_all());
-                let synced = synced.and_then(|()| sync_folder(&self.folder));
-                synced
-                    .map_err(|source| self.unwritten(WriteAsideError::Io { path: path.clone(), source }))?;
+                // A program that was killed may have left it without bringing it to the disk.
+                self.synced(&path, File::open(&path).and_then(|file| file.sync_all()))?;
             }
             written => written.map_err(|error| self.unwritten(error))?,
         }
+        self.synced(&path, sync_folder(&self.folder))?;
         self.open_to_readers(&path);
         Ok(())
+    }
+
+    /// Refuses to count the file `path` as there for certain unless it was `brought` to the disk.
+    fn synced(&self, path: &Path, brought: io::Result<()>) -> Result<(), SinkError> {
+        brought.map_err(|source| self.unwritten(WriteAsideError::Io { path: path.to_owned(), source }))
     }
 
     /// Refuses a folder that does not exist. One made here would hide the one that is to be mounted.

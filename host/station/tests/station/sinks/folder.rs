@@ -59,6 +59,23 @@ fn each_run_is_a_file_with_the_bytes_that_are_exported_and_a_waiver_is_one_too()
     }
 }
 
+/// The share goes, or its disk breaks, when the file has its name: a power cut may take that away again.
+#[test]
+fn what_the_folder_may_lose_in_a_power_cut_is_sent_again() {
+    let (folder, sink) = station("record");
+    let share = folder.path().join("share");
+    fs::create_dir(&share).unwrap();
+    settings(folder.path(), &sink);
+    let mut broken = Command::new("strace");
+    broken.args(["-f", "-qq", "-o", "/dev/null", "-e", "inject=fsync:error=EIO", "-P"]).arg(&share);
+    broken.arg(program()).args(["outbox", "send", "--any-disk", "--settings"]);
+    let vain = Did::from(broken.arg(folder.path().join("station.toml")).output().unwrap());
+    // A folder is not sent the two lines of the audit.
+    assert!(vain.said.starts_with("2 sent, 8 not"), "{vain:?}");
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("8 sent, 0 not"), "{sent:?}");
+}
+
 /// A disk that is not mounted would have a station that begins anew.
 #[test]
 fn nothing_is_sent_of_a_station_that_is_not_there_and_none_is_made() {
