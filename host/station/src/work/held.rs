@@ -91,7 +91,11 @@ impl Holding {
         let (stop, stopped) = mpsc::channel::<()>();
         let known = Arc::new(Known::of(held.lease()));
         let noted = Arc::clone(&known);
-        let renew = move || renew(&plant, &held, &noted, &stopped);
+        let renew = move || {
+            if renew(&plant.hasty(), &held, &noted, &stopped) {
+                give_back(&plant, &held);
+            }
+        };
         let thread = thread::Builder::new().name("lease".to_owned()).spawn(move || {
             if let Err(fault) = guarded(renew) {
                 tracing::error!("{fault}");
@@ -174,9 +178,9 @@ impl Known {
     }
 }
 
-/// Renews what is held until it is stopped or lost, and gives the board back when it is stopped: it is held even when its job is
+/// Renews what is held until it is stopped or lost; returns whether the board is to be given back: it is held even when its job is
 /// not any more. If the plant is away for too long, the lease ends by itself.
-fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) {
+fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) -> bool {
     let mut wait = RENEWED;
     while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
         let asked = Moment::now();
@@ -193,7 +197,7 @@ fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) 
         }
         match known.lost() {
             None => {}
-            Some(Lost::Unreached { .. }) => return,
+            Some(Lost::Unreached { .. }) => return false,
             Some(Lost::Taken { .. }) => {
                 // Its lane may still use it until then.
                 let _ = stopped.recv();
@@ -201,7 +205,7 @@ fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) 
             }
         }
     }
-    give_back(plant, held);
+    true
 }
 
 fn give_back(plant: &PlantLink, held: &Held) {

@@ -18,6 +18,8 @@ use crate::trust::{self, TrustError};
 const REACHED: Duration = Duration::from_secs(10);
 /// How long to wait for a server's answer. Ordinary questions take it a few seconds at most.
 const SILENT: Duration = Duration::from_secs(20);
+/// The same for a question that is soon asked again, and for being connected then. Such questions take a server an instant.
+const HASTY: Duration = Duration::from_secs(4);
 /// How long what was sent to a server may stay without a TCP acknowledgement.
 const ACKNOWLEDGED: Duration = Duration::from_secs(20);
 /// How long a connection may be idle before a TCP keepalive probe, and the time between two probes.
@@ -95,10 +97,20 @@ impl PlantAddress {
         Self { patience: None, ..self.clone() }
     }
 
+    /// The same for a question that has to be answered in time, if need be over the next connection: one to a server that is gone
+    /// stays silent for ever.
+    #[must_use]
+    pub(super) fn hasty(&self) -> Self {
+        let mut hasty = Self { patience: Some(HASTY), ..self.clone() };
+        hasty.config.connect_timeout(HASTY).tcp_user_timeout(HASTY);
+        hasty
+    }
+
     /// A new connection.
     pub(super) fn connect(&self) -> Result<Postgres, DatabaseError> {
         let servers = self.config.get_hosts().len().max(self.config.get_hostaddrs().len());
-        let reached = SILENT.saturating_mul(u32::try_from(servers).unwrap_or(u32::MAX));
+        let reached =
+            self.patience.unwrap_or(SILENT).saturating_mul(u32::try_from(servers).unwrap_or(u32::MAX));
         match &self.tls {
             None => Postgres::connect(&self.config, NoTls, reached, self.patience),
             Some(tls) => {

@@ -24,6 +24,13 @@ impl PlantLink {
         Self(Arc::new(Parts { address, plant: Mutex::default() }))
     }
 
+    /// A link of its own to the same plant, for short questions that have to be answered in time: it waits for no other question,
+    /// and only seconds for an answer.
+    #[must_use]
+    pub(crate) fn hasty(&self) -> Self {
+        Self::new(self.0.address.hasty())
+    }
+
     /// The plant's answer to `question`. Other questions wait meanwhile.
     ///
     /// # Errors

@@ -50,7 +50,7 @@ pub(crate) fn board(number: usize, kind: &str) -> SharedBoard {
 }
 
 /// A plant with `count` boards of the kind `mock`.
-fn shared(count: usize) -> (Server, Plant) {
+pub(crate) fn shared(count: usize) -> (Server, Plant) {
     let server = Server::prepared();
     let mut plant = Plant::connect(&server.address()).unwrap();
     for number in 0..count {

@@ -7,16 +7,21 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
 use halfrow_station::outbox::{Standing, round};
-use halfrow_station::store::{PlantAddress, SINK_OF_PLANT, SharedStore};
+use halfrow_station::store::{PlantAddress, PlantLink, SINK_OF_PLANT, SharedStore, Turn, Waiter};
+use halfrow_station::work::{Held, Holding};
 
 use super::sent::sink;
 use super::server::Server;
+use crate::common::until;
 use crate::history::made::{End, Made, Run};
+use crate::jobs::shared;
 
 /// A relay in front of a server.
 struct Way {
     port: u16,
     is_silent: Arc<AtomicBool>,
+    /// Whether something was sent while it was silent.
+    has_swallowed: Arc<AtomicBool>,
 }
 
 impl Way {
@@ -25,18 +30,19 @@ impl Way {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let is_silent = Arc::new(AtomicBool::new(false));
-        let told = Arc::clone(&is_silent);
+        let has_swallowed = Arc::new(AtomicBool::new(false));
+        let (told, notes) = (Arc::clone(&is_silent), Arc::clone(&has_swallowed));
         thread::spawn(move || {
             for client in listener.incoming() {
                 let (client, server) = (client.unwrap(), TcpStream::connect(("127.0.0.1", to)).unwrap());
                 for (from, to) in [(&client, &server), (&server, &client)] {
                     let (from, to) = (from.try_clone().unwrap(), to.try_clone().unwrap());
-                    let is_silent = Arc::clone(&told);
-                    thread::spawn(move || carry(from, to, &is_silent));
+                    let (is_silent, has_swallowed) = (Arc::clone(&told), Arc::clone(&notes));
+                    thread::spawn(move || carry(from, to, &is_silent, &has_swallowed));
                 }
             }
         });
-        Self { port, is_silent }
+        Self { port, is_silent, has_swallowed }
     }
 
     fn is_silent(&self, is_silent: bool) {
@@ -45,11 +51,14 @@ impl Way {
 }
 
 /// Forwards bytes until it is to be silent; then this connection stays as it is for ever.
-fn carry(mut from: TcpStream, mut to: TcpStream, is_silent: &AtomicBool) {
+fn carry(mut from: TcpStream, mut to: TcpStream, is_silent: &AtomicBool, has_swallowed: &AtomicBool) {
     let mut bytes = vec![0; 65_536];
     while let Ok(read @ 1..) = from.read(&mut bytes) {
-        while is_silent.load(Ordering::SeqCst) {
-            thread::park();
+        if is_silent.load(Ordering::SeqCst) {
+            has_swallowed.store(true, Ordering::SeqCst);
+            loop {
+                thread::park();
+            }
         }
         if to.write_all(&bytes[..read]).is_err() {
             break;
@@ -91,4 +100,27 @@ fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
     assert_eq!(due(), 1);
     assert_eq!(round(&store, &mut sink, &mut Standing::default()).unwrap().sent, 1);
     assert_eq!(server.rows("SELECT count(*) FROM run"), [["2"]]);
+}
+
+/// As when a server fails over: nothing comes over the connection that was, and the next one works at once.
+#[test]
+fn a_board_is_still_held_when_the_connection_that_renews_it_is_dead() {
+    let (server, mut plant) = shared(1);
+    let way = Way::to(server.port());
+    let url = format!("postgres://postgres@127.0.0.1:{}/plant", way.port);
+    let link = PlantLink::new(PlantAddress::new(&url, None, None).unwrap());
+    let waiter = Waiter::new("mock", "weber", "12").unwrap();
+    let turn = link.ask(|plant| plant.wait(&waiter)).unwrap();
+    let Turn::Held(lease) = turn else { panic!("it is free") };
+    let holding = Holding::begin(link, Held::Board(lease.clone()));
+    way.is_silent(true);
+    until("a renewal", || way.has_swallowed.load(Ordering::SeqCst));
+    way.is_silent(false);
+    let renewed_until = || server.rows("SELECT until_ms FROM board")[0][0].parse::<i64>().unwrap();
+    let before = renewed_until();
+    until("the next renewal", || renewed_until() > before || holding.is_lost());
+    assert_eq!(holding.lost(), None);
+    assert!(plant.renew(&lease).unwrap());
+    holding.end();
+    assert!(!plant.renew(&lease).unwrap(), "it was given back");
 }
