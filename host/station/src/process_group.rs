@@ -29,14 +29,19 @@ pub(crate) fn command(program: impl AsRef<OsStr>) -> Command {
 
 /// How a process ended, if it does so within `limit`.
 pub(crate) fn waited(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
-    let (begun, mut look) = (Instant::now(), FIRST);
+    seen(limit, || child.try_wait().ok().flatten())
+}
+
+/// What `look` sees, if it sees anything within `limit`.
+fn seen<T>(limit: Duration, mut look: impl FnMut() -> Option<T>) -> Option<T> {
+    let (begun, mut pause) = (Instant::now(), FIRST);
     loop {
-        match child.try_wait() {
-            Ok(Some(status)) => return Some(status),
-            _ if begun.elapsed() > limit => return None,
-            _ => thread::sleep(look),
+        match look() {
+            Some(seen) => return Some(seen),
+            None if begun.elapsed() > limit => return None,
+            None => thread::sleep(pause),
         }
-        look = LONGEST.min(2 * look);
+        pause = LONGEST.min(2 * pause);
     }
 }
 
@@ -45,6 +50,12 @@ pub(crate) fn waited(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
 pub(crate) fn killed(child: &mut Child) -> Option<ExitStatus> {
     kill(child.id());
     waited(child, KILLED)
+}
+
+/// Kills the group of a process that is no child of this one; returns whether it ended. `is_gone` tells that.
+pub(crate) fn killed_until(leader: u32, is_gone: impl Fn() -> bool) -> bool {
+    kill(leader);
+    seen(KILLED, || is_gone().then_some(())).is_some()
 }
 
 /// Kills the process group of `leader`, which may be empty already.

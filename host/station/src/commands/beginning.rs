@@ -23,6 +23,7 @@ use crate::history::PlanName;
 use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::{self, Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
+use crate::said::Saying;
 use crate::settings::{PlanFile, PlantSettings, Settings};
 use crate::store::{Folder, SharedStore, Store};
 
@@ -171,8 +172,13 @@ impl<'a> Ready<'a> {
 
     /// Starts the engine, with nothing left open.
     pub(super) fn start(mut self) -> Result<Engine, Failure> {
-        recovered(&mut self.store)?;
-        Engine::start(self.settings.clone(), self.store, OWN_PROGRAM.into()).map_err(Failure::error)
+        let recovered = recovered(&mut self.store)?;
+        let engine =
+            Engine::start(self.settings.clone(), self.store, OWN_PROGRAM.into()).map_err(Failure::error)?;
+        for Saved { record, .. } in recovered.iter().filter(|saved| saved.is_stuck) {
+            engine.stuck(&record.run.lane);
+        }
+        Ok(engine)
     }
 }
 
@@ -215,9 +221,13 @@ pub(super) fn sinks(settings: &Settings, store: &mut Store) -> Result<Vec<Box<dy
 /// Closes the runs that were under way when the station ended, prints them, and returns them.
 pub(super) fn recovered(store: &mut Store) -> Result<Vec<Saved>, Failure> {
     let recovered = runs::recover(store)?;
-    for Saved { record, .. } in &recovered {
-        let (id, serial) = (&record.run.id, &record.run.serial);
+    for Saved { record, is_stuck, .. } in &recovered {
+        let (id, serial, lane) = (&record.run.id, &record.run.serial, &record.run.lane);
         console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
+        if *is_stuck {
+            let why = Saying::Unkillable;
+            console::error(&format_args!("the lane {lane} of that run may still have its board: {why}"));
+        }
     }
     Ok(recovered)
 }

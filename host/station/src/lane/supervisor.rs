@@ -14,7 +14,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::message::MOST_LINE;
 use super::{Control, FILE_MIB, Job, Message, Ruling};
-use crate::process_group::{command, kill, killed, waited};
+use crate::process_group::{command, killed, killed_until, waited};
 use crate::record::{BlobError, BoardSeen, StepRecord, made_within};
 use crate::said::{Said, Saying};
 
@@ -334,22 +334,22 @@ fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<In
     is_deaf.then(|| Saying::LaneDeaf { seconds: seconds(GRACE) }.into())
 }
 
-/// Kills the lane of a run whose station ended before it, if the lane still exists. It is known by its id and by when
-/// it began, because ids are reused.
-pub(crate) fn kill_left_behind(spool: &Path) {
+/// Kills the lane of a run whose station ended before it, if the lane still exists, and waits until it has let go of its board;
+/// returns whether it has. It is known by its id and by when it began, because ids are reused.
+pub(crate) fn kill_left_behind(spool: &Path) -> bool {
     let noted = fs::read_to_string(spool.join(PROCESS)).unwrap_or_default();
     let mut words = noted.split_whitespace().map(str::parse::<u64>);
-    let (Some(Ok(id)), Some(Ok(born))) = (words.next(), words.next()) else { return };
-    if let Ok(id) = u32::try_from(id)
-        && started(id) == Some(born)
-    {
-        kill(id);
-    }
+    let (Some(Ok(id)), Some(Ok(born))) = (words.next(), words.next()) else { return true };
+    let Ok(id) = u32::try_from(id) else { return true };
+    let is_gone = || started(id) != Some(born);
+    is_gone() || killed_until(id, is_gone)
 }
 
-/// When a process began, in ticks since the computer was started: field 22 of proc_pid_stat(5), whose second field may
-/// contain blanks.
+/// When a process began that has not ended, in ticks since the computer was started: fields 3 and 22 of proc_pid_stat(5), whose
+/// second field may contain blanks. Whoever should hear of the end of a process may let it wait for years.
 fn started(id: u32) -> Option<u64> {
     let stat = fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
-    stat.rsplit_once(')')?.1.split_whitespace().nth(19)?.parse().ok()
+    let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
+    fields.next().filter(|state| !["Z", "X"].contains(state))?;
+    fields.nth(18)?.parse().ok()
 }

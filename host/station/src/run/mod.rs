@@ -5,13 +5,14 @@
 //!     └ recovered: a run that is found open is ERROR, cause crash, and never PASS
 //! ```
 
+mod evidence;
 mod lent_board;
 mod patience;
 mod recovered;
 
 use std::borrow::Cow;
-use std::fs::{self, File};
-use std::io::{self, Read as _};
+use std::fs;
+use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -21,18 +22,19 @@ pub use recovered::{recover, recover_run};
 
 use crate::ids::NoRandomness;
 use crate::labgrid::LaneBoard;
-use crate::lane::supervisor::{Attendant, EVENTS, End, LOG, LaneReport};
-use crate::lane::{FILE_MIB, Job, Message, Ruling, kept_frame};
+use crate::lane::supervisor::{Attendant, End, LaneReport};
+use crate::lane::{Job, Message, Ruling};
 use crate::plan::limits::Maker;
 use crate::plan::serial::{Serial, SerialError};
 use crate::plan::{Plan, Selected, changed, mock};
 use crate::record::{
-    Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause,
-    RunHead, SCHEMA, StepRecord, SuspectRecord, judged,
+    Attachment, Blobs, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead,
+    SCHEMA, StepRecord, SuspectRecord, judged,
 };
 use crate::said::{Said, Saying};
 use crate::store::{Admission, Folder, SharedStore, StoreError, Stored};
 use crate::{clock, ids};
+use evidence::attached;
 
 /// What to run on which board.
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +75,8 @@ pub struct Saved {
     pub stored: Stored,
     /// When that was, in milliseconds since 1970, UTC.
     pub saved_ms: i64,
+    /// Whether the lane's process could not be killed: it may still have the board.
+    pub is_stuck: bool,
 }
 
 /// An observer of a run, who may stop it.
@@ -136,7 +140,6 @@ pub enum RunError {
 /// # Errors
 /// [`RunError`] when there is no verdict that may be shown.
 pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Result<Saved, RunError> {
-    let Order { plan, .. } = order;
     refuse_changed(order)?;
     let started_ms = clock::now_ms();
     let not_begun = |error| RunError::NotBegun(Box::new(error));
@@ -147,7 +150,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         station: order.station.to_owned(),
         lane: order.lane.to_owned(),
         unit_id: ids::new(started_ms)?.to_string(),
-        product: plan.product.clone(),
+        product: order.plan.product.clone(),
         serial: serial.text,
         variant: serial.variant,
         operator: order.operator.to_owned(),
@@ -156,7 +159,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         started_ms,
         job: order.job.cloned(),
     };
-    let planned = plan_record(plan);
+    let planned = plan_record(order.plan);
     let folder = store.with(|store| store.folder().clone());
     let spool = folder.spool(&head.id);
     // Whoever finds the run open finds its claim, too.
@@ -176,7 +179,8 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let mut record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
     record.conclusion = record.conclusion.stopped_since(why);
     let steps = selected.steps.len() as u32;
-    save(&folder, record, |record| store.with(|store| store.finish(record, steps)))
+    let finish = |record: &_| store.with(|store| store.finish(record, steps));
+    Ok(Saved { is_stuck, ..save(&folder, record, attached, finish)? })
 }
 
 /// Refuses a plan of which a file is another one than when it was read.
@@ -333,11 +337,12 @@ fn last_suspects(steps: &[StepRecord]) -> Vec<SuspectRecord> {
     of_steps.find(|some| !some.is_empty()).cloned().unwrap_or_default()
 }
 
-/// Saves the record by `finish`, and removes the spool. Unless the run is a PASS, what the lane wrote down is attached; it is on
-/// the disk before `finish`, the only part that needs the store.
+/// Saves the record by `finish`, and removes the spool. Unless the run is a PASS, what the lane wrote down is attached by `attach`;
+/// it is on the disk before `finish`, the only part that needs the store.
 fn save(
     folder: &Folder,
     mut record: Record,
+    attach: impl FnOnce(&Blobs, &Path) -> Result<Vec<Attachment>, StoreError>,
     finish: impl FnOnce(&Record) -> Result<Stored, StoreError>,
 ) -> Result<Saved, RunError> {
     let spool = folder.spool(&record.run.id);
@@ -346,7 +351,7 @@ fn save(
         // What the lane wrote down is there, too.
         folder.refuse_gone()?;
         if record.conclusion.verdict != halfrow::Verdict::Pass {
-            record.attachments = attached(&folder.blobs(), &spool)?;
+            record.attachments = attach(&folder.blobs(), &spool)?;
         }
         finish(&record)
     };
@@ -358,39 +363,5 @@ fn save(
     {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
     }
-    Ok(Saved { record, stored, saved_ms })
-}
-
-/// Stores what a lane wrote down as evidence, each file up to [`FILE_MIB`].
-fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
-    let mut attachments = Vec::new();
-    let text = "text/plain; charset=utf-8";
-    let told = [(EVENTS, "application/jsonl"), (LOG, text), (kept_frame::NOT_KEPT, text)];
-    let told = told.map(|(name, media_type)| (name.to_owned(), media_type));
-    let frames = match kept_frame::names(spool) {
-        // A lane that was not started has no folder.
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
-        names => names.map_err(|source| BlobError::Read { path: spool.to_owned(), source })?,
-    };
-    let frames = frames.into_iter().map(|name| (name, "image/png"));
-    for (name, media_type) in told.into_iter().chain(frames) {
-        let path = spool.join(&name);
-        let bytes = match beginning(&path) {
-            Ok(bytes) if bytes.is_empty() => continue,
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
-            Err(source) => return Err(BlobError::Read { path, source }.into()),
-        };
-        let sha256 = blobs.put(&bytes)?;
-        let (bytes, media_type) = (bytes.len() as u64, media_type.to_owned());
-        attachments.push(Attachment { name, sha256, bytes, media_type });
-    }
-    Ok(attachments)
-}
-
-/// The first bytes of a file, at most [`FILE_MIB`] of them.
-fn beginning(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    File::open(path)?.take(FILE_MIB << 20).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    Ok(Saved { record, stored, saved_ms, is_stuck: false })
 }

@@ -18,6 +18,7 @@ use crate::record::{
 use crate::said::Saying;
 use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stored};
 
+use super::evidence::attached_as_can_be;
 use super::{RunError, Saved, Stage, Watch, save};
 
 /// The claim of the job that a run belongs to, in the run's spool: the row of an open run does not have it.
@@ -71,7 +72,7 @@ fn noted_claim(spool: &Path) -> Option<JobClaim> {
 /// count: to test a board again costs a minute, a wrong PASS costs more.
 ///
 /// # Errors
-/// [`RunError`] when a run cannot be closed; its lane stays blocked.
+/// [`RunError`] when a run cannot be closed; its lane stays blocked. All that can be closed are closed before.
 pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
     let open = store.open_runs().map_err(|error| RunError::NotBegun(Box::new(error)))?;
     if !open.is_empty() {
@@ -79,8 +80,9 @@ pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
     }
     let folder = store.folder().clone();
     let why = |tries| Saying::StationEnded { tries };
-    let closed = open.into_iter().map(|open| closed(&folder, open, why, |record| store.finish(record, 0)));
-    let closed = closed.collect::<Result<_, _>>()?;
+    let closed: Vec<_> =
+        open.into_iter().map(|open| closed(&folder, open, why, |record| store.finish(record, 0))).collect();
+    let closed = closed.into_iter().collect::<Result<_, _>>()?;
     clear(store);
     Ok(closed)
 }
@@ -99,7 +101,7 @@ pub fn recover_run(store: &SharedStore, run: &str) -> Result<Saved, RunError> {
         return closed(&folder, open, why, |record| store.with(|store| store.finish(record, 0)));
     }
     let (stored, record) = store.with(|store| store.settled(run)).map_err(unsaved)?;
-    Ok(Saved { record, stored, saved_ms: clock::now_ms() })
+    Ok(Saved { record, stored, saved_ms: clock::now_ms(), is_stuck: false })
 }
 
 /// Removes the spools of runs that ended after their result was saved and before they could do so, and spools that are a day
@@ -130,7 +132,7 @@ fn closed(
     let OpenRun { run, plan_sha256, plan: [name, version, text] } = open;
     let spool = folder.spool(&run.id);
     let run = RunHead { job: noted_claim(&spool), ..run };
-    kill_left_behind(&spool);
+    let is_stuck = !kill_left_behind(&spool);
     let steps = told(&spool);
     let why = why(steps.len());
     let board = steps.iter().find_map(|step| step.board.clone());
@@ -154,7 +156,7 @@ fn closed(
         program: halfrow::VERSION.to_owned(),
         run,
     };
-    save(folder, record, finish)
+    Ok(Saved { is_stuck, ..save(folder, record, attached_as_can_be, finish)? })
 }
 
 /// Whether the run could count as production when it began.
