@@ -1,7 +1,7 @@
 //! A PASS names what it did not test, line by line: a fault there goes unseen, and a fault anywhere else does not.
 
-use halfrow::result::NotExercised;
-use halfrow::run::{Plan, Vary};
+use halfrow::result::{CheckName, Finding, NotExercised, SoakLength};
+use halfrow::run::{AtSpeed, Plan, Vary};
 use halfrow::verdict::Verdict;
 use halfrow_model::BitDepth;
 use halfrow_tests::system::{System, judge_by_plan, open, streamed};
@@ -146,4 +146,17 @@ fn a_board_that_ignores_the_centre_is_found_where_the_centre_varies() {
         .collect();
     assert!(matches!(differing[..], [Some(_)]), "{differing:?}");
     assert_eq!(judge_by_plan(&varying, open("mock")).verdict(), Verdict::Pass);
+}
+
+/// The board makes its clock with its PLL, and names 1 Hz, at which 6 frames of (64·8 + 8) clocks take 52 minutes.
+#[test]
+fn a_clock_that_a_soak_does_not_measure_is_named_and_tells_no_time() {
+    let soak = AtSpeed::Soak(SoakLength::Frames { frames: 6 });
+    let plan = Plan { at_speed: soak, fail_fast: false, ..System::TINY.plan() };
+    let report = judge_by_plan(&plan, open("mock,fault=wrong-clock-claim"));
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+    assert!(report.not_exercised.contains(&NotExercised::UnseenClock { clock_hz: 1 }), "{report:?}");
+    let at_speed = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
+    let Finding::EqualAtSpeed(equal) = at_speed.finding else { panic!("{}", at_speed.detail()) };
+    assert_eq!((equal.frames, equal.clock_hz, equal.seconds), (6, 1, None));
 }

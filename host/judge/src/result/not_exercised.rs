@@ -72,8 +72,8 @@ pub enum NotExercised {
         /// What was seen of it.
         seen: ClockSeen,
     },
-    /// The pixel clock that the board names was not checked: only frames at speed show it, and none were made; or it is hardware
-    /// that names the clock of a mock.
+    /// The pixel clock that the board names was not checked: no frames at speed were made, which alone show it; or they were those
+    /// of a soak, which measures no clock; or it is hardware that names the clock of a mock.
     UnseenClock {
         /// The one that it names, in hertz.
         clock_hz: u32,

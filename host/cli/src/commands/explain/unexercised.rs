@@ -48,8 +48,8 @@ pub(super) const fn act(part: &NotExercised) -> &'static str {
              seconds at speed (--at-speed)."
         }
         NotExercised::UnseenClock { .. } => {
-            "Leave the frames at speed in; if a physical board says that its clock is the host's, correct what it says of \
-             itself (tag 0e of CAPABILITIES in protocol/WIRE.md)."
+            "Run `halfrow verify` with its frames at speed left in: a soak measures no clock. If a physical board says that its \
+             clock is the host's, correct what it says of itself (tag 0e of CAPABILITIES in protocol/WIRE.md)."
         }
         NotExercised::Rules {} => "Run `halfrow verify` without --within: a soak leaves the rules out.",
         NotExercised::Grids {} => {

@@ -119,7 +119,9 @@ impl Run<'_> {
             exercised.whole = [JUDGED, DECOY].into_iter().take(tables.len()).collect();
         }
         let BurstSeen { frames, paused, held_back, .. } = watched;
-        self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, corners, seen: clock, ..NONE });
+        let clock_hz = self.board.capabilities.clock_hz;
+        let seconds = (clock_hz > 0 && clock.allows(clock_hz)).then(|| plan.seconds(frames));
+        self.note_right(paused, EqualAtSpeed { frames, seen: clock, seconds, held_back, corners, ..NONE });
         Ok(exercised)
     }
 
@@ -230,12 +232,10 @@ impl Run<'_> {
         usual.of_frames(usual.frames.min(most.max(2)))
     }
 
-    /// Notes that all frames of `plan` are right, of which `paused` had pauses.
-    fn note_right(&mut self, plan: &BurstPlan, paused: u32, right: EqualAtSpeed) {
+    /// Notes that all frames are right, of which `paused` had pauses.
+    fn note_right(&mut self, paused: u32, right: EqualAtSpeed) {
         let (clock_hz, frames) = (self.board.capabilities.clock_hz, right.frames);
-        let is_known = clock_hz > 0 && right.seen.allows(clock_hz);
-        let seconds = is_known.then(|| plan.seconds(frames));
-        let equal = Finding::EqualAtSpeed(EqualAtSpeed { clock_hz, seconds, ..right });
+        let equal = Finding::EqualAtSpeed(EqualAtSpeed { clock_hz, ..right });
         match paused {
             0 => self.findings.checks.passed(CheckName::AtSpeed, equal),
             _ => self.findings.checks.skipped(CheckName::AtSpeed, Finding::PausedAtSpeed { frames, paused }),

@@ -85,9 +85,10 @@ impl Run<'_> {
         let capabilities = &self.board.capabilities;
         let has_decoy = self.generations.iter().any(|generation| generation.number == DECOY);
         let changes = has_decoy && capabilities.table_banks > 1;
-        let plan = price::burst_of(self.plan, capabilities, bursts, 0);
-        self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, ..NONE });
-        Ok(Exercised { left: super::untested(changes, paused > 0), ..Exercised::default() })
+        let mut left = super::untested(changes, paused > 0);
+        left.extend(self.clock_unseen());
+        self.note_right(paused, EqualAtSpeed { frames, held_back, ..NONE });
+        Ok(Exercised { left, ..Exercised::default() })
     }
 
     /// The run's clock: the link's, plus the time of earlier links, which broke.
