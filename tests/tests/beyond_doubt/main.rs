@@ -25,6 +25,7 @@ mod late_rows;
 mod least_blanking;
 mod left_tables;
 mod lost_rows;
+mod misplaced;
 mod outages;
 mod recordings;
 mod refusals;

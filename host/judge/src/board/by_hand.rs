@@ -65,19 +65,27 @@ impl CameAgain {
     }
 }
 
-/// The row in `packet`, if it is the one at `place` and was sent before at least `repeats` times.
-fn came_again(packet: &Packet<'_>, place: &RowPlace, repeats: u16) -> Option<CameAgain> {
+/// The row in `packet`, if it has the number of the one at `place` and was sent before at least `repeats` times.
+///
+/// # Errors
+/// [`BoardError::WrongPlace`] when it names another place.
+fn came_again(packet: &Packet<'_>, place: &RowPlace, repeats: u16) -> Option<Result<CameAgain, BoardError>> {
     let Ok(Reply::RowOut(row)) = Reply::read(packet) else { return None };
+    if row.place.row_sequence != place.row_sequence || row.repeats < repeats {
+        return None;
+    }
+    if row.place != *place {
+        return Some(Err(BoardError::WrongPlace { place: row.place }));
+    }
     let mut samples = vec![0; row.place.width.into()];
     samples::unpack(row.packed, &mut samples);
-    let came = CameAgain {
+    Some(Ok(CameAgain {
         repeats: row.repeats,
         generation: row.generation,
         samples,
         clocks: [row.first_latency, row.last_latency, row.pauses],
         entered: row.entered,
-    };
-    (row.place == *place && row.repeats >= repeats).then_some(came)
+    }))
 }
 
 /// Whether `packet` says that the board no longer knows the session.
@@ -239,7 +247,7 @@ impl Board {
     /// core.
     ///
     /// # Errors
-    /// [`BoardError`] when it does not come.
+    /// [`BoardError`] when it does not come, or comes with another place.
     pub(crate) fn again(
         &mut self,
         row: (&RowPlace, &[u16]),
@@ -264,7 +272,7 @@ impl Board {
                     is_lost |= is_of_no_session(packet);
                 })?;
                 match came {
-                    Some(came) => return Ok(came),
+                    Some(came) => return came,
                     None if is_lost => return Err(BoardError::SessionLost),
                     None => {}
                 }

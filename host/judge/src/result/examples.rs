@@ -93,7 +93,7 @@ fn of_the_board() -> [Finding; 18] {
         Finding::CounterWrong { counter: Counter::RowsOut, counted: 17_279, right: 17_280, rule: None },
         Finding::GapsMiscounted { row: 3, frame: 2, counted: 11, expected: 12 },
         Finding::LatencyMiscounted { least: 972, most: 972, counted_least: 971, counted_most: 972 },
-        Finding::RowMisplaced { row: 3, frame: 2 },
+        Finding::RowMisplaced(PlacedRow { row: 3, frame: 2, rules: false }),
         Finding::RowSwallowed { row: 3, frame: 2, again: 3 },
         Finding::RowCopyDiffers(PlacedRow { row: 3, frame: 2, rules: false }),
         Finding::RowNeverSent { row: 3, frame: 2, sequence: 1083, rules: false },

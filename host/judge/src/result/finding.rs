@@ -286,12 +286,7 @@ pub enum Finding {
         counted_most: u32,
     },
     /// A row came back with the place of a row that was never sent.
-    RowMisplaced {
-        /// The row that it names.
-        row: u16,
-        /// The frame.
-        frame: u16,
-    },
+    RowMisplaced(PlacedRow),
     /// Twice, a row went into the board and never came out.
     RowSwallowed {
         /// The row.

@@ -35,7 +35,7 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         | Finding::CounterWrong { .. }
         | Finding::GapsMiscounted { .. }
         | Finding::LatencyMiscounted { .. }
-        | Finding::RowMisplaced { .. }
+        | Finding::RowMisplaced(_)
         | Finding::RowNeverSent { .. }
         | Finding::RowNumberedTwice(_)
         | Finding::RowRepeatsStand(_)

@@ -128,9 +128,9 @@ pub fn sentence(finding: &Finding) -> String {
             count(*rows, "row")
         ),
         Finding::LatencyWrong(late) => latency::sentence(late),
-        Finding::RowMisplaced { row, frame } => format!(
-            "the board returned row {row} of frame {frame} with a place that was never sent; its bitstream and this \
-             halfrow do not match"
+        Finding::RowMisplaced(PlacedRow { row, frame, rules }) => format!(
+            "the board returned {} with a place that was never sent; its bitstream and this halfrow do not match",
+            row_of(*row, *frame, *rules)
         ),
         Finding::RowSwallowed { row, frame, again } => format!(
             "row {row} of frame {frame} went into the board and never came out; when it was streamed again, \

@@ -39,7 +39,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         | Finding::LatencyMiscounted { .. } => {
             "Check the board's counters and its row player; the samples themselves were right."
         }
-        Finding::RowMisplaced { .. } | Finding::RowNeverSent { .. } => {
+        Finding::RowMisplaced(_) | Finding::RowNeverSent { .. } => {
             "Check how the board keeps a row's place with its samples."
         }
         Finding::RowSwallowed { .. } => {

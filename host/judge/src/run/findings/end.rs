@@ -2,8 +2,10 @@
 
 use std::error::Error;
 
+use halfrow_protocol::message::RowPlace;
+
 use crate::board::{BoardError, Shown};
-use crate::result::{CheckName, Finding, Outcome, Problem, Suspect};
+use crate::result::{CheckName, Finding, Outcome, PlacedRow, Problem, Suspect};
 use crate::run::NoThread;
 use crate::verdict::Cause;
 
@@ -17,10 +19,18 @@ pub(crate) enum End {
 }
 
 impl End {
-    /// The run could not go on because the board could not be driven.
+    /// The run could not go on because the board could not be driven. If a row came back with a place that was never sent, the board
+    /// is wrong: it came whole, under the number of a row that was.
     pub(crate) fn board(check: CheckName, error: &BoardError) -> Self {
-        let (cause, finding) = (error.cause(), Problem::of(error).into());
-        Self::Error { check, cause, finding, shown: error.shown() }
+        let rules = check == CheckName::Rules;
+        let placed = |place: &RowPlace| PlacedRow { row: place.row, frame: place.frame, rules };
+        let finding = match error {
+            BoardError::WrongPlace { place } => {
+                return Self::failed(check, Finding::RowMisplaced(placed(place)));
+            }
+            _ => Problem::of(error).into(),
+        };
+        Self::Error { check, cause: error.cause(), finding, shown: error.shown() }
     }
 
     /// The run could not go on because of something at the station.

@@ -102,10 +102,6 @@ impl Run<'_> {
                 let late = judge.all_late().filter(|_| place.last);
                 frame.map_or_else(of_board, |frame| self.row_lost(frame, &segment.geometry, place, late))
             }
-            BoardError::WrongPlace { place } => {
-                let finding = Finding::RowMisplaced { row: place.row, frame: place.frame };
-                End::failed(CheckName::Frames, finding)
-            }
             other => End::board(CheckName::Frames, &other),
         }
     }
