@@ -1,8 +1,8 @@
-//! Rows that come back with the place of another row where frames are not what is judged.
+//! Rows that come back with the place of another row, or never, where frames are not what is judged.
 
 use halfrow::result::{CheckName, Finding, PlacedRow, Report};
 use halfrow::run::{Part, Plan, Selection};
-use halfrow::verdict::Verdict;
+use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::message::{Configuration, Request, RowOut};
 use halfrow_protocol::{Packet, Reply};
@@ -96,4 +96,13 @@ fn a_row_in_the_wrong_place_is_the_boards_where_it_brings_tables_into_effect() {
         matches!(**found, Finding::RowMisplaced(PlacedRow { frame: ACTIVATING, rules: false, .. })),
         "{found:?}"
     );
+}
+
+#[test]
+fn a_row_that_is_lost_where_it_brings_tables_into_effect_sends_nobody_in_a_circle() {
+    let report = returning(&at_speed(), |row| (row.place.frame != ACTIVATING).then_some(row));
+    assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
+    assert!(!report.headline().contains("halfrow verify"), "{}", report.headline());
+    let remedy = report.remedy().unwrap();
+    assert!(remedy.contains("cable") && !remedy.contains("verify"), "{remedy}");
 }

@@ -171,12 +171,13 @@ fn on_entry_and_at_speed() -> [Finding; 6] {
     ]
 }
 
-fn unjudged() -> [Finding; 14] {
+fn unjudged() -> [Finding; 15] {
     let reason = Problem::new("no-answer", "no answer to ECHO in 8 tries; check that the board is powered");
     [
         Finding::RowLostOnce { row: 3, frame: 2 },
         Finding::RowLostAmongOthers { row: 3, frame: 2 },
         Finding::RowLostEachTime(MissingRow { row: 3, frame: 2, waits_for: None }),
+        Finding::RowStayedAway(PlacedRow { row: 3, frame: 65_535, rules: false }),
         Finding::BurstStalled { frame: 17, frames: 138, seconds: 5.0 },
         Finding::BurstEndedEarly { came: 17, frames: 138 },
         Finding::RightInAnotherSession {

@@ -343,6 +343,9 @@ pub enum Finding {
     },
     /// A row did not come back however often its frame was sent again, and nothing else was lost.
     RowLostEachTime(MissingRow),
+    /// A row did not come back, however often it was asked for. It was no row of the frames to be judged, so that its frame was not
+    /// sent again.
+    RowStayedAway(PlacedRow),
     /// Something was wrong, but was right in another session, so the link may have caused it.
     RightInAnotherSession {
         /// What was wrong.

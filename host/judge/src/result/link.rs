@@ -84,6 +84,7 @@ fn may_come_from_line(finding: &Finding) -> bool {
         | Finding::WrongOverDoubtfulLink { .. }
         | Finding::RowLostOnce { .. }
         | Finding::RowLostAmongOthers { .. }
+        | Finding::RowStayedAway(_)
         | Finding::RowLostEachTime(_)
         | Finding::BurstStalled { .. }
         | Finding::BurstEndedEarly { .. } => true,

@@ -62,6 +62,7 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         | Finding::BurstEndedEarly { .. }
         | Finding::RowLostOnce { .. }
         | Finding::RowLostAmongOthers { .. }
+        | Finding::RowStayedAway(_)
         | Finding::RowLostEachTime(_)
         | Finding::RightInAnotherSession { .. }
         | Finding::WrongOverDoubtfulLink { .. }

@@ -161,6 +161,9 @@ pub fn sentence(finding: &Finding) -> String {
         Finding::RowLostOnce { row, frame } => missing::once(*row, *frame),
         Finding::RowLostAmongOthers { row, frame } => missing::among_others(*row, *frame),
         Finding::RowLostEachTime(missing) => missing::each_time(missing),
+        Finding::RowStayedAway(PlacedRow { row, frame, rules }) => {
+            missing::stayed_away(&row_of(*row, *frame, *rules))
+        }
         Finding::RightInAnotherSession { found, doubt } => format!(
             "{}; the link may have caused that, because {}: in another session everything was right; check the \
              link, and run again",

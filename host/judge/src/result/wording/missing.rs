@@ -32,6 +32,15 @@ pub(super) fn each_time(&MissingRow { row, frame, waits_for }: &MissingRow) -> S
     missing((row, frame), &alone)
 }
 
+/// Nothing was tried beyond asking for `row`.
+pub(super) fn stayed_away(row: &str) -> String {
+    not_back(row, "check cable, connectors and rate, and run again")
+}
+
 fn missing((row, frame): (u16, u16), seen: &str) -> String {
-    format!("row {row} of frame {frame} did not come back, although it was asked for again and again; {seen}")
+    not_back(&format!("row {row} of frame {frame}"), seen)
+}
+
+fn not_back(row: &str, seen: &str) -> String {
+    format!("{row} did not come back, although it was asked for again and again; {seen}")
 }

@@ -78,6 +78,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         }
         Finding::RowLostOnce { .. } => "Check cable and connectors, and run again.",
         Finding::RowLostAmongOthers { .. } => "Check cable, connectors and rate.",
+        Finding::RowStayedAway(_) => "Check cable, connectors and rate, and run again.",
         Finding::RowLostEachTime(_) => {
             "Check what the board does with this row, and whether something on the way swallows certain bytes or lengths."
         }

@@ -28,6 +28,7 @@ impl End {
             BoardError::WrongPlace { place } => {
                 return Self::failed(check, Finding::RowMisplaced(placed(place)));
             }
+            BoardError::RowMissing { place, .. } => Finding::RowStayedAway(placed(place)),
             _ => Problem::of(error).into(),
         };
         Self::Error { check, cause: error.cause(), finding, shown: error.shown() }

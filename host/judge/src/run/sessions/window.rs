@@ -15,8 +15,10 @@ impl Run<'_> {
     /// have kept back the row that pushes it out of the core, or the link may lose it. But no link changes how far ahead a board's
     /// own answer to a RESET sets the window.
     pub(crate) fn told_of_window(&mut self, end: End) -> End {
-        let is_of_row =
-            matches!(end.finding(), Finding::RowLostEachTime(_) | Finding::RowLostAmongOthers { .. });
+        let is_of_row = matches!(
+            end.finding(),
+            Finding::RowLostEachTime(_) | Finding::RowLostAmongOthers { .. } | Finding::RowStayedAway(_)
+        );
         if !end.is_without_credit() && !is_of_row {
             return end;
         }
