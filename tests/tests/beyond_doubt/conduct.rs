@@ -92,7 +92,7 @@ fn a_second_copy_that_differs_is_the_board_s_fault() {
         row.repeats = 1;
         packed.iter_mut().for_each(|byte| *byte ^= 0xff);
     });
-    fails(&report, CheckName::Frames, "row 3 of frame 0 came twice with different samples");
+    fails(&report, CheckName::Frames, "row 3 of frame 0 came twice, and the copies differ in samples");
 }
 
 #[test]

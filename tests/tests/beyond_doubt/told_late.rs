@@ -21,7 +21,7 @@ use crate::stale_packets::cut_when_told;
 /// Frames beyond it are those by which rules are tried.
 const PLANNED: u16 = 1000;
 /// Of a row that comes twice.
-const DIFFERS: &str = "came twice with different samples";
+const DIFFERS: &str = "came twice, and the copies differ in samples";
 
 fn place(packet: &Passing) -> Option<RowPlace> {
     match packet.reply() {

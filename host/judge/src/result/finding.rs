@@ -296,7 +296,7 @@ pub enum Finding {
         /// The row that was lost when the frame was played again.
         again: u16,
     },
-    /// The board sent a row twice, with different samples.
+    /// The board sent a row twice, and the copies differ in more than the count of repeats.
     RowCopyDiffers(PlacedRow),
     /// The board returned a row that it was never given.
     RowNeverSent {

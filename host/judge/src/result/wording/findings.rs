@@ -138,7 +138,7 @@ pub fn sentence(finding: &Finding) -> String {
         ),
         Finding::RuleBroken { rule, request, right, found } => rules::broken(*rule, request, right, found),
         Finding::RowCopyDiffers(PlacedRow { row, frame, rules }) => format!(
-            "{} came twice with different samples, each time with a right CRC",
+            "{} came twice, and the copies differ in samples, place, generation, latencies or pauses, each with a right CRC",
             row_of(*row, *frame, *rules)
         ),
         Finding::RowNeverSent { row, frame, sequence, rules } => format!(
@@ -146,8 +146,8 @@ pub fn sentence(finding: &Finding) -> String {
             row_of(*row, *frame, *rules)
         ),
         Finding::RowNumberedTwice(NumberedRow { row, frame, number, rules }) => format!(
-            "the board numbers its ROW_OUT packets wrongly: {} has the number {number}, and so has another row shortly before \
-             it",
+            "the board numbers its ROW_OUT packets wrongly: {} has the number {number}, and so has another packet shortly \
+             before it",
             row_of(*row, *frame, *rules)
         ),
         Finding::RowRepeatsStand(RepeatedRow { row, frame, repeats, rules }) => format!(
