@@ -45,4 +45,5 @@ mod stale_packets;
 mod stalls;
 mod told_at_speed;
 mod told_late;
+mod uncounted;
 mod windows;

@@ -24,8 +24,16 @@ pub enum Doubt {
     CountersOfLinks {},
     /// The board does not say how many packets reached it.
     PacketsUncounted {},
-    /// An answer that the board must give did not come back, however often it was asked for.
+    /// An answer that the board must give did not come back, however often it was asked for, or what it was told had no effect,
+    /// however often it was told.
     AnswerLost {},
+    /// The board counts fewer damaged packets than were sent to it: something on the way may have made the others whole.
+    DamageUncounted {
+        /// What it counts.
+        counted: u32,
+        /// How many were sent.
+        sent: u32,
+    },
 }
 
 impl Doubt {

@@ -300,5 +300,10 @@ pub(crate) fn because(doubt: Doubt) -> String {
         }
         Doubt::PacketsUncounted {} => "the board does not tell how many packets reached it".to_owned(),
         Doubt::AnswerLost {} => "a link can lose the same packet each time".to_owned(),
+        Doubt::DamageUncounted { counted, sent } => format!(
+            "the board counts {} of the {} that were sent to it, and something on the way may have made the others whole",
+            grouped(counted),
+            count(sent, "damaged packet")
+        ),
     }
 }

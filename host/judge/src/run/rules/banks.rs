@@ -6,9 +6,9 @@ use halfrow_protocol::message::RowPlace;
 use super::compared::Compared;
 use super::counts::equal;
 use super::rows::{FRAME, GENERATION, TRIES};
-use super::{Rules, answer, broken, miscounted, of_rows, other_row};
+use super::{Rules, answer, broken, counter_wrong, doubted, miscounted, of_rows, other_row};
 use crate::board::{BoardError, NumberedFrame, Response, Status};
-use crate::result::{Answer, CheckName, Counter, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::findings::End;
 
 /// Rows that wait because all banks are full. The first of them takes the first bank that becomes free.
@@ -148,7 +148,7 @@ impl Rules<'_, '_> {
     /// Gives the rows for which no bank is free. They must not come back, even if they are given again.
     fn stay_away(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let made = self.small.made(0, self.height, GENERATION);
-        let all = kept.first + kept.banks + WAITING;
+        let (all, mut next_row_in) = (kept.first + kept.banks + WAITING, 0);
         for look in 0..TRIES {
             kept.is_exact = look == 0;
             for row in kept.banks..kept.banks + WAITING {
@@ -159,13 +159,15 @@ impl Rules<'_, '_> {
             }
             let status = self.status()?;
             self.window_at_most(kept, 0)?;
-            if status.next_row_in == all {
+            next_row_in = status.next_row_in;
+            if next_row_in == all {
                 self.given.rows = WAITING;
                 self.right += 1;
                 return self.unneeded(kept, kept.banks);
             }
         }
-        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(kept.banks), attempts: TRIES }))
+        let not_taken = counter_wrong(Some(Rule::Banks), Counter::NextRowIn, next_row_in, all);
+        Err(doubted(not_taken, Doubt::AnswerLost {}))
     }
 
     /// Sends a row again that the board has and that needs no answer, with other samples.
@@ -188,17 +190,20 @@ impl Rules<'_, '_> {
     fn damaged_frees_none(&mut self, kept: &FilledBanks) -> Result<(), End> {
         self.run.board.disregard_rows(WAITING);
         let before = self.status()?;
-        let sent = self.run.board.acknowledge_damaged(kept.first + kept.banks);
+        let sent: u32 = self.run.board.acknowledge_damaged(kept.first + kept.banks).iter().sum();
         let after = self.status()?;
         self.run.board.disregard_rows(0);
         if after.next_row_out == kept.first {
             self.right += 1;
             return Ok(());
         }
-        if after.damaged().saturating_sub(before.damaged()) < sent.iter().sum() {
-            return Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: 1 }));
-        }
-        Err(miscounted(Some(Rule::Damage), Counter::NextRowOut, after.next_row_out, kept.first))
+        let freed = counter_wrong(Some(Rule::Damage), Counter::NextRowOut, after.next_row_out, kept.first);
+        let counted = after.damaged().saturating_sub(before.damaged());
+        Err(if counted < sent {
+            doubted(freed, Doubt::DamageUncounted { counted, sent })
+        } else {
+            End::failed(CheckName::Rules, freed)
+        })
     }
 
     /// Row `row` must come again as it came before, with this `repeats`.
@@ -247,10 +252,12 @@ impl Rules<'_, '_> {
                 return self.unneeded(kept, 0);
             }
         }
-        if had_it {
-            return Err(miscounted(Some(Rule::Banks), Counter::NextRowOut, kept.first, kept.first + 1));
-        }
-        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: TRIES }))
+        let not_freed = counter_wrong(Some(Rule::Banks), Counter::NextRowOut, kept.first, kept.first + 1);
+        Err(if had_it {
+            End::failed(CheckName::Rules, not_freed)
+        } else {
+            doubted(not_freed, Doubt::AnswerLost {})
+        })
     }
 
     /// Acknowledges all rows that came. Those that waited must come back right.

@@ -321,7 +321,11 @@ fn of_rows(rule: Rule, error: BoardError) -> End {
 }
 
 fn miscounted(rule: Option<Rule>, counter: Counter, counted: u32, right: u32) -> End {
-    End::failed(CheckName::Rules, Finding::CounterWrong { counter, counted, right, rule })
+    End::failed(CheckName::Rules, counter_wrong(rule, counter, counted, right))
+}
+
+fn counter_wrong(rule: Option<Rule>, counter: Counter, counted: u32, right: u32) -> Finding {
+    Finding::CounterWrong { counter, counted, right, rule }
 }
 
 fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {
@@ -331,8 +335,12 @@ fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {
 /// An answer that must be given did not come, however often it was asked for. Silence alone makes no board wrong, since a
 /// link can lose the same packet each time, or all packets for a while.
 fn unanswered(rule: Rule, kind: Kind, right: Answer) -> End {
-    let found = Box::new(rule_broken(rule, kind, right, Answer::Nothing {}));
-    let finding = Finding::WrongOverDoubtfulLink { found, doubt: Doubt::AnswerLost {} };
+    doubted(rule_broken(rule, kind, right, Answer::Nothing {}), Doubt::AnswerLost {})
+}
+
+/// Something was `found` that the link may have caused each time.
+fn doubted(found: Finding, doubt: Doubt) -> End {
+    let finding = Finding::WrongOverDoubtfulLink { found: Box::new(found), doubt };
     End::error(CheckName::Rules, Cause::Station, finding)
 }
 

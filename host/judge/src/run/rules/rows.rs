@@ -8,10 +8,10 @@ use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
 use super::counts::equal;
-use super::{FIRST_FACTOR, Rules, longer, of_rows, other_row, payload};
-use crate::board::{BoardError, CameAgain};
+use super::{FIRST_FACTOR, Rules, counter_wrong, doubted, longer, of_rows, other_row, payload};
+use crate::board::CameAgain;
 use crate::reference::correct;
-use crate::result::{CheckName, Counter, Finding, Rule};
+use crate::result::{CheckName, Counter, Doubt, Rule};
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::{During, End};
 use crate::run::sessions::window::window_wrong;
@@ -207,20 +207,20 @@ impl Rules<'_, '_> {
     /// that, so a row that does not enter makes no board wrong.
     pub(super) fn enter(&mut self) -> Result<(), End> {
         let place = self.place(0);
-        let mut has_come = false;
+        let (rule, after, mut next_row_in) = (Some(Rule::Inside), place.row_sequence + 1, 0);
         for _ in 0..TRIES {
             self.give(0);
             let status = self.status()?;
             if status.core_busy == 1 {
                 return Ok(());
             }
-            has_come = status.next_row_in > place.row_sequence;
+            next_row_in = status.next_row_in;
         }
-        if !has_come {
-            return Err(of_rows(Rule::Inside, BoardError::RowMissing { place, attempts: TRIES }));
+        if next_row_in < after {
+            let not_taken = counter_wrong(rule, Counter::NextRowIn, next_row_in, after);
+            return Err(doubted(not_taken, Doubt::AnswerLost {}));
         }
-        let rule = Some(Rule::Inside);
-        let finding = Finding::CounterWrong { counter: Counter::CoreBusy, counted: 0, right: 1, rule };
+        let finding = counter_wrong(rule, Counter::CoreBusy, 0, 1);
         if self.says_entered(place)? {
             return Err(End::failed(CheckName::Rules, finding));
         }
