@@ -242,3 +242,21 @@ fn a_pass_without_its_report_keeps_nothing_of_a_pass_and_says_how_to_get_one() {
     let silent = Report { link: LinkReport { line_errors, ..silent.link }, ..silent };
     assert!(silent.remedy().unwrap().contains("`baud=`"), "{:?}", silent.remedy());
 }
+
+#[test]
+fn a_report_that_no_disk_kept_from_its_place_has_the_remedy_of_what_did() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    write(&path, false, &made::pass());
+    let folder = ReportFolder::prepare(&path, true).unwrap();
+    fs::write(path.join("notes.txt"), "not of a report").unwrap();
+    let mut finished = Finished { report: made::pass(), evidence: Vec::new() };
+    finished.commit(folder).unwrap_err();
+    let report = finished.report;
+    assert!(
+        report.headline().contains("is not an earlier report, and is left alone"),
+        "{}",
+        report.headline()
+    );
+    assert_eq!(report.remedy().as_deref(), Some("Give the report another name."));
+}

@@ -29,19 +29,22 @@ impl Finished {
     pub fn commit(&mut self, folder: ReportFolder) -> Result<(), Lack> {
         let earlier = folder.earlier().map(Path::to_path_buf);
         let Err(error) = folder.commit(&self.report, &self.evidence) else { return Ok(()) };
+        let why = Problem::of(&error);
         let remedy = match error {
             ReportError::Exists { .. } => {
                 "Name another place for the report, or allow it to be overwritten, then run again."
             }
-            _ => {
+            ReportError::Prepare { .. } | ReportError::Write { .. } | ReportError::Place { .. } => {
                 "See that its folder is there and has space, or choose another place for the report, then run again."
             }
-        };
+            _ => why.remedy.as_deref().unwrap_or("Run again."),
+        }
+        .to_owned();
         let left = earlier.map_or_else(String::new, |path| {
             format!(", and {} still holds that of an earlier run", path.display())
         });
         let what = Problem::new(REPORT_LOST, format!("the report could not be written{left}"));
-        Err(self.lose(Problem { causes: Problem::of(&error).chain(), ..what }, remedy))
+        Err(self.lose(Problem { causes: why.chain(), ..what }, remedy))
     }
 
     /// What is missing if the run's recording could not be finished, as `lost` says; a PASS then becomes an ERROR.
@@ -51,14 +54,14 @@ impl Finished {
         // Its sentence already says what its own causes say.
         let causes = vec![Problem { causes: Vec::new(), ..Problem::of(why) }];
         let remedy = "See that its folder is there and has space, or choose another place for the recording, then run again.";
-        Some(self.lose(Problem { causes, ..what }, remedy))
+        Some(self.lose(Problem { causes, ..what }, remedy.to_owned()))
     }
 
     /// Notes that something that was asked for is missing. A PASS without it becomes an ERROR. Any other verdict stands,
     /// so that it is not lost too.
-    fn lose(&mut self, what: Problem, remedy: &str) -> Lack {
+    fn lose(&mut self, what: Problem, remedy: String) -> Lack {
         let report = &mut self.report;
-        let what = Box::new(Problem { remedy: Some(remedy.to_owned()), ..what });
+        let what = Box::new(Problem { remedy: Some(remedy), ..what });
         if report.verdict() != Verdict::Pass {
             report.lacks.push(Problem::clone(&what));
             return Lack { what, is_told: false };
