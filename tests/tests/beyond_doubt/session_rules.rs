@@ -1,10 +1,16 @@
 //! Boards that are sound except in what opens a session, what ends one, and what they count.
 
+use std::convert::Infallible;
+use std::time::Duration;
+
+use halfrow::link::{Candidate, WireLink};
 use halfrow::result::{Answer, CheckName, Counter, Finding, Report, Rule};
+use halfrow::target::BoardKind;
 use halfrow::verdict::Verdict;
-use halfrow_mock::Options;
+use halfrow_mock::{Board, Options};
+use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
 use halfrow_protocol::message::{Refusal, RefusalCode, Reset, ResetLevel, Status};
-use halfrow_protocol::{Header, Kind, Packet, Reply, Request, VERSION};
+use halfrow_protocol::{Decoder, Header, Kind, Packet, Reply, Request, VERSION};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{failed_check, judge_by_plan, open};
 
@@ -287,5 +293,47 @@ fn a_board_that_loses_its_power_while_another_host_asks_for_it_is_asked_again() 
         resets.into_iter().chain([packet]).collect()
     };
     let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+}
+
+/// A board of a station that is frozen for a while, together with its clock, just before another host asks for the board the first
+/// time.
+struct Frozen {
+    board: Board,
+    decoder: Decoder,
+    own: Option<u32>,
+    /// For how long it was frozen.
+    time: Duration,
+}
+
+impl Endpoint for Frozen {
+    type Failure = Infallible;
+
+    fn receive(&mut self, bytes: &[u8], now: Duration) -> Result<(), Infallible> {
+        let mut rest = bytes;
+        while let Some(packet) = self.decoder.next(&mut rest) {
+            let Ok(Packet { header, payload }) = packet else { continue };
+            if let Some((_, host)) = greeting(&Passing { header, payload: payload.to_vec() })
+                && *self.own.get_or_insert(host) != host
+            {
+                self.time = Duration::from_secs(11);
+            }
+        }
+        self.board.receive(bytes, now + self.time);
+        Ok(())
+    }
+
+    fn outgoing(&mut self) -> &mut Vec<u8> {
+        self.board.outgoing()
+    }
+}
+
+#[test]
+fn a_station_that_is_frozen_while_another_host_asks_for_the_board_makes_no_board_fail() {
+    let board = Board::new(&Options::default(), None).unwrap();
+    let frozen = Frozen { board, decoder: Decoder::new(), own: None, time: Duration::ZERO };
+    let pipe = Pipe::new(frozen, PipeOptions::default(), None);
+    let link = WireLink::new(pipe, "a frozen station", false);
+    let report = judge_by_plan(&plan(), Candidate::new("frozen", BoardKind::Mock, link));
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }

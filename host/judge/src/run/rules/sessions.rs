@@ -41,7 +41,8 @@ const SECOND_ROW: usize = 1;
 
 impl Rules<'_, '_> {
     pub(super) fn sessions(&mut self) -> Result<(), End> {
-        self.powered(Self::held)?;
+        // A station that was frozen together with its clock does not know how long the board heard nothing of it.
+        self.powered(|rules| rules.thrice(Self::held))?;
         self.other_versions()?;
         self.powered(|rules| rules.always(Self::greeted_again))?;
         // The session that follows drops what the link still holds of this one, with greater numbers of rows.
