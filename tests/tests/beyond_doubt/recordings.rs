@@ -246,3 +246,24 @@ fn the_link_test_bears_such_a_clock() {
     let figures = halfrow::link_test::run(&mut board, Duration::from_millis(50), 1).unwrap();
     assert_eq!((figures.errors.wrong, figures.to_board.seconds), (0, 0.0));
 }
+
+/// The host that recorded it also computed between two exchanges, and this one exchanges nothing.
+#[test]
+fn a_replay_tells_no_round_trip() {
+    let folder = Folder::new();
+    let small = ["--width", "64", "--height", "8", "--frame", "builtin:noise", "--record", "sound.rec"];
+    let call = ["verify", "--json", "--board", "mock,speed=100000,delay=0.01"];
+    let recorded = folder.halfrow(call.into_iter().chain(small)).json();
+    // A packet each way takes 10 ms and its bytes' time.
+    assert!(recorded["link"]["round_trip_us"].as_u64().unwrap() > 20_000, "{}", recorded["link"]);
+    let replay = ["verify", "--board", "replay:sound.rec"];
+    let again = folder.halfrow(replay.into_iter().chain(["--json", "--report", "again"])).json();
+    assert_eq!(
+        (&again["verdict"], &again["link"]["round_trip_us"]),
+        (&"PASS".into(), &serde_json::Value::Null)
+    );
+    let page = folder.text("again/report.html");
+    for told in [page, folder.halfrow(replay).stdout] {
+        assert!(!told.to_lowercase().contains("round trip"), "{told}");
+    }
+}

@@ -46,7 +46,7 @@ pub struct LinkReport {
     /// The most retries, late ones not counted, with which the link still counts as good enough to judge a board. Each link has its
     /// own limit, and after reconnections this is their sum.
     pub retry_limit: u64,
-    /// The round trip of an empty request, in microseconds of the link's clock.
+    /// The round trip of an empty request, in microseconds of the link's clock; none if it was not measured. A replay makes none.
     pub round_trip_us: Option<u64>,
     /// How long the run took on the link's clock, in seconds.
     pub seconds: f64,
