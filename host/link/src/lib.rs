@@ -185,8 +185,8 @@ pub enum LinkError {
     },
     /// The recording ends, but the run would go on.
     #[error(
-        "{link} ends at {:.3} s, where the run that made it was interrupted or had no more to do; record a whole run with \
-         this program", at.as_secs_f64()
+        "{link} ends at {:.3} s, where the run that made it was interrupted, lost its link or had no more to do; record a whole \
+         run with this program, over a link that does not break", at.as_secs_f64()
     )]
     RecordingEnds {
         /// The recording.

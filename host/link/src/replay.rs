@@ -183,7 +183,9 @@ mod tests {
         twice += replay.line_errors();
         assert_eq!((twice.breaks, twice.parity, twice.sum()), (u64::MAX, 6, u64::MAX));
         let ended = replay.exchange(b"request", &mut Vec::new(), Duration::ZERO);
-        assert!(matches!(ended, Err(LinkError::RecordingEnds { .. })));
+        let Err(ended @ LinkError::RecordingEnds { .. }) = ended else { panic!("{ended:?}") };
+        // Whoever recorded it may not have interrupted it.
+        assert!(ended.to_string().contains("lost its link"), "{ended}");
     }
 
     #[test]
