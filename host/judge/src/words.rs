@@ -102,17 +102,19 @@ pub fn board_name(name: &str) -> Cow<'_, str> {
 /// some.
 #[must_use]
 pub fn plain(text: &str) -> Cow<'_, str> {
-    // Line separators, noncharacters and the marks of text direction, which make text read as another.
-    let unfit = |letter: char| {
-        letter.is_control()
-            || matches!(letter, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-    };
-    if !text.contains(unfit) {
+    if !text.contains(is_unfit) {
         return Cow::Borrowed(text);
     }
     let spelt =
-        |letter: char| if unfit(letter) { letter.escape_default().to_string() } else { letter.into() };
+        |letter: char| if is_unfit(letter) { letter.escape_default().to_string() } else { letter.into() };
     Cow::Owned(text.chars().map(spelt).collect())
+}
+
+/// Whether a terminal may obey `letter`, or text with it may read as another: control characters, line separators, noncharacters and
+/// the marks of text direction.
+pub(crate) fn is_unfit(letter: char) -> bool {
+    letter.is_control()
+        || matches!(letter, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// `words` as a sentence of its own, with a capital and a full stop; none if there are no words.
