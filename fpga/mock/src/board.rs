@@ -136,7 +136,7 @@ impl Board {
     /// Counts a packet of a session that is not open, and refuses it.
     fn turn_away(&mut self, header: &Header) {
         count(&mut self.status.foreign_packets);
-        if header.kind != Kind::RowAck.code() {
+        if header.kind != Kind::RowAck.code() || self.has(Conduct::AckRefused) {
             self.refuse(header, (RefusalCode::Session, 0));
         }
     }

@@ -195,6 +195,17 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
     fault("stuck-repeats", "a row that is sent again says that it was never sent before", &[], |_| {
         Ok(BoardFault::Conduct(Conduct::StuckRepeats))
     }),
+    fault(
+        "unkept-rule",
+        "a rule of the wire is not kept that no frame shows",
+        &[Parameter::new(
+            "instead",
+            Range::Words(&Conduct::UNKEPT_NAMES),
+            Some("partial-write"),
+            "what the board does instead",
+        )],
+        |values| Ok(BoardFault::Conduct(values.choice("instead", &Conduct::UNKEPT)?)),
+    ),
     fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
     fault("wrong-clock-claim", "the board claims a pixel clock of 1 Hz, made by its PLL", &[], |_| {
         Ok(BoardFault::WrongClockClaim)

@@ -138,6 +138,16 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=rows-anywhere",
         "took it without an answer (rule: a row out of place must be refused)",
     ),
+    fails(
+        "factors in front of a wrong one that are written",
+        ",fault=unkept-rule",
+        "a table entry out of range must be refused, and nothing of its packet written",
+    ),
+    fails(
+        "a wrong factor named by its place in the packet",
+        ",fault=unkept-rule,instead=place-in-packet",
+        "as `range`, detail 2, but it refused it as `range`, detail 1",
+    ),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

@@ -109,6 +109,11 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         "took it without an answer (rule: a row out of place must be refused)",
     ),
     fails(
+        "factors in front of a wrong one that are written to a board with grids",
+        ",fault=unkept-rule",
+        "a table entry out of range must be refused, and nothing of its packet written",
+    ),
+    fails(
         "a commit of a grid that is not checked",
         ",fault=unchecked-commit",
         "the board must refuse COMMIT",

@@ -235,9 +235,9 @@ fn what_is_to_be_skipped_is_no_reason_to_refuse() {
 #[test]
 fn each_entry_of_a_packet_is_looked_at() {
     let report = said_by(&Options::default(), |packet| {
-        let first =
-            refusal(&packet).filter(|refusal| refusal.code == RefusalCode::Range && refusal.detail == 0);
-        match first.filter(|refusal| refusal.kind == Kind::TableWrite.code()) {
+        let second =
+            refusal(&packet).filter(|refusal| refusal.code == RefusalCode::Range && refusal.detail == 2);
+        match second.filter(|refusal| refusal.kind == Kind::TableWrite.code()) {
             Some(refusal) => Some(carried_out(&packet, refusal)),
             None => Some(packet),
         }

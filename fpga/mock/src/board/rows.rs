@@ -64,9 +64,9 @@ impl RowBanks {
         self.acknowledged
     }
 
-    /// Notes that the host has every row before `window`. It cannot have one that was never sent.
+    /// Notes that the host has every row before `window`.
     fn acknowledge(&mut self, window: u32) {
-        self.acknowledged = self.acknowledged.max(window.min(self.unsent));
+        self.acknowledged = self.acknowledged.max(window);
     }
 
     pub(super) fn is_waiting(&self) -> bool {
@@ -138,8 +138,11 @@ impl Board {
     /// Whether the row begins a frame or follows its predecessor. A predecessor that has not arrived may turn out to be the
     /// right one.
     fn follows(&self, place: &RowPlace) -> bool {
+        let is_known = |before: &RowPlace| {
+            before.row_sequence < self.rows.next_to_play || !self.has(Conduct::AnyFollower)
+        };
         place.row == 0
-            || match self.rows.predecessor(place.row_sequence) {
+            || match self.rows.predecessor(place.row_sequence).filter(is_known) {
                 Some(before) => before.frame == place.frame && before.row == place.row - 1,
                 None => place.row_sequence != self.rows.next_to_play,
             }
@@ -161,7 +164,9 @@ impl Board {
 
     /// Frees the out-banks of all rows before `window`.
     pub(super) fn acknowledge(&mut self, window: u32) {
-        self.rows.acknowledge(window);
+        // The host cannot have a row that was never sent.
+        let sent = if self.has(Conduct::AckBeyond) { u32::MAX } else { self.rows.unsent };
+        self.rows.acknowledge(window.min(sent));
         let acknowledged = self.rows.acknowledged;
         while self.player.banks.complete().next().is_some_and(|row| row.name.sequence < acknowledged) {
             self.player.banks.fetch();

@@ -9,6 +9,7 @@ use super::identity::{KERNEL_PORTS, ROW_FACTOR_PORTS};
 use super::{Board, Refused};
 use crate::core::{GridShape, Node};
 use crate::depth::Depth;
+use crate::faults::Conduct;
 use crate::settings::{Settings, SettingsError};
 use crate::tables::{self, Port, TableError};
 
@@ -56,21 +57,36 @@ impl Board {
         }
         let first = usize::from(first);
         let written = match table {
-            Table::RowFactors => self.tables.write_factors(first, &entries.row_factors().collect::<Vec<_>>()),
+            Table::RowFactors => self.write_factors(first, &entries.row_factors().collect::<Vec<_>>()),
             Table::Grid => self.tables.write_grid(first, &entries.row_factors().collect::<Vec<_>>()),
             Table::Kernel => {
                 self.tables.write_nodes(first, &entries.nodes().map(Node::from).collect::<Vec<_>>())
             }
         };
-        let entry = |place: usize| u16::try_from(place).unwrap_or(u16::MAX);
         written.map_err(|error| match error {
             TableError::NoSuchEntry { .. } => (RefusalCode::Range, entries.span.first),
             TableError::Factor { row: place, .. } | TableError::GridEntry { entry: place, .. } => {
-                (RefusalCode::Range, entry(place))
+                (RefusalCode::Range, self.named(entries.span, place))
             }
-            TableError::OuterTaps { node } => (RefusalCode::Taps, entry(node)),
+            TableError::OuterTaps { node } => (RefusalCode::Taps, self.named(entries.span, node)),
             TableError::CommitPending { .. } => (RefusalCode::Busy, 0),
         })
+    }
+
+    fn write_factors(&mut self, first: usize, factors: &[u32]) -> Result<(), TableError> {
+        let written = self.tables.write_factors(first, factors);
+        if let Err(TableError::Factor { row, .. }) = written
+            && self.has(Conduct::PartialWrite)
+        {
+            self.tables.write_factors(first, &factors[..row - first])?;
+        }
+        written
+    }
+
+    /// The detail of a refusal for the entry at `place` of the table that `span` is in.
+    fn named(&self, span: Span, place: usize) -> u16 {
+        let place = u16::try_from(place).unwrap_or(u16::MAX);
+        if self.has(Conduct::PlaceInPacket) { place - span.first } else { place }
     }
 
     /// The bytes of entries for a reply, as the datapath's port reads them, if they fit a packet.

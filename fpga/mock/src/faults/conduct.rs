@@ -19,4 +19,22 @@ pub enum Conduct {
     DamagedAck,
     /// It says of every row that is sent again that it was never sent before.
     StuckRepeats,
+    /// It writes the factors in front of one that it refuses.
+    PartialWrite,
+    /// It names a wrong entry by its place in the packet instead of that in the table.
+    PlaceInPacket,
+    /// It refuses a ROW_ACK of another session.
+    AckRefused,
+    /// It takes any row behind one that waits, as if that had not come.
+    AnyFollower,
+    /// It takes rows as acknowledged that it has not sent yet.
+    AckBeyond,
+}
+
+impl Conduct {
+    /// Those that break a rule which a run must try on purpose, by their names.
+    pub(crate) const UNKEPT: [Self; 5] =
+        [Self::PartialWrite, Self::PlaceInPacket, Self::AckRefused, Self::AnyFollower, Self::AckBeyond];
+    pub(crate) const UNKEPT_NAMES: [&str; 5] =
+        ["partial-write", "place-in-packet", "ack-refused", "any-follower", "ack-beyond"];
 }

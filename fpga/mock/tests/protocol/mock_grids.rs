@@ -6,7 +6,7 @@ use halfrow_conformance::capabilities::values;
 use halfrow_conformance::frames::{row, samples_of};
 use halfrow_conformance::grids::{greeted, narrow};
 use halfrow_conformance::material::{drawn_grid, hermite};
-use halfrow_conformance::uploads::{TableSet, span};
+use halfrow_conformance::uploads::{TableSet, span, write};
 use halfrow_conformance::{Bench, Build, ReceivedPacket, suite};
 use halfrow_mock::{Board, BoardFault, FAULTS, Options, board_fault};
 use halfrow_protocol::message::{
@@ -75,12 +75,13 @@ fn fault(name: &str, given: &[(&str, &str)]) -> BoardFault {
 }
 
 /// All that a host hears from a board that plays frames of four rows through grids and makes frames itself, is given a damaged
-/// packet, a commit and a row that it must refuse, and is greeted by another host.
+/// packet, entries, a commit and a row that it must refuse, and is greeted by another host.
 fn heard_of(fault: Option<BoardFault>) -> Vec<ReceivedPacket> {
     let mut bench = configured(fault, 4);
     let mut heard = bench.say(&Request::Capabilities);
     let tables = [grid(4, 7), grid(4, 8)];
     tables[0].upload(&mut bench);
+    heard.extend(bench.say(&write(Table::RowFactors, 0, &[1, 0, 0, 0, 0, 0, 0, 0])));
     let own = std::mem::replace(&mut bench.session, 77);
     heard.extend(bench.say(&Request::Capabilities));
     bench.session = own;

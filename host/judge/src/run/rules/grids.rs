@@ -3,6 +3,7 @@
 use halfrow_model::{GridShape, TableSet};
 use halfrow_protocol::message::{Commit, Entries, Grids, RefusalCode, Request, Shape, Span, Table};
 
+use super::tables::PLACE;
 use super::{FIRST_FACTOR, Rules};
 use crate::board::grids;
 use crate::result::Rule;
@@ -24,9 +25,9 @@ impl Rules<'_, '_> {
         for wrong in (0..u32::BITS).map(|bit| 1_u32 << bit).filter(|&wrong| wrong > most) {
             for (place, entries) in [(1, [most, wrong]), (0, [wrong, most])] {
                 let bytes = entries.map(u32::to_le_bytes).concat();
-                let span = Span { table: Table::Grid, count: 2, ..FIRST_FACTOR };
+                let span = Span { table: Table::Grid, first: PLACE, count: 2, ..FIRST_FACTOR };
                 let request = Request::TableWrite(Entries { span, bytes: &bytes });
-                self.refused(Rule::Entry, &request, RefusalCode::Range, place)?;
+                self.refused(Rule::Entry, &request, RefusalCode::Range, PLACE + place)?;
             }
         }
         Ok(())

@@ -13,6 +13,10 @@ use crate::run::findings::{During, End};
 use crate::tables::Generation;
 
 const NODE_COUNT: u16 = NODES as u16;
+/// A row factor, and a grid entry, that is right and that the small tables have nowhere.
+const RIGHT: u32 = 1;
+/// Where entries are tried to be written: not where a place in the packet and one in the table have the same number.
+pub(super) const PLACE: u16 = 1;
 
 impl Rules<'_, '_> {
     pub(super) fn tables(&mut self) -> Result<(), End> {
@@ -108,15 +112,17 @@ impl Rules<'_, '_> {
         for wrong in [0, one + 1, one | 1 << 12].into_iter().chain(beyond.filter(|&value| value > one)) {
             // A table of one row has no room for two.
             let lists = if self.capabilities.max_height > 1 {
-                vec![(1, vec![one, wrong]), (0, vec![wrong, one])]
+                vec![(1, vec![RIGHT, wrong]), (0, vec![wrong, RIGHT])]
             } else {
                 vec![(0, vec![wrong])]
             };
             for (place, entries) in lists {
                 let bytes: Vec<u8> = entries.iter().flat_map(|entry| entry.to_le_bytes()).collect();
-                let span = Span { count: entries.len() as u16, ..FIRST_FACTOR };
+                let count = entries.len() as u16;
+                let first = PLACE.min(self.capabilities.max_height - count);
+                let span = Span { first, count, ..FIRST_FACTOR };
                 let request = Request::TableWrite(Entries { span, bytes: &bytes });
-                self.refused(Rule::Entry, &request, RefusalCode::Range, place)?;
+                self.refused(Rule::Entry, &request, RefusalCode::Range, first + place)?;
             }
         }
         if self.known_grids().is_some() {
