@@ -46,4 +46,5 @@ mod stalls;
 mod told_at_speed;
 mod told_late;
 mod uncounted;
+mod unkept_rules;
 mod windows;

@@ -27,7 +27,7 @@ fn hearing(kind: Kind, alter: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report 
 }
 
 /// The report on a board whose answer to a request of `kind`, if its payload `is_meant`, becomes what `alter` makes of it.
-fn answering(
+pub(super) fn answering(
     kind: Kind,
     is_meant: impl Fn(&[u8]) -> bool + Send + 'static,
     alter: impl Fn(Passing) -> Passing + Send + 'static,

@@ -155,8 +155,9 @@ impl Rules<'_, '_> {
         places.extend(places_in(0..NODE_COUNT).into_iter().map(|first| (Table::Kernel, first)));
         let span = |table, first| Span { table, first, ..FIRST_FACTOR };
         for &(table, first) in &places {
-            let request =
-                Request::TableWrite(Entries { span: span(table, first), bytes: &entry(table, first) });
+            // A write goes to every port, whichever it names.
+            let span = Span { port: u8::MAX, ..span(table, first) };
+            let request = Request::TableWrite(Entries { span, bytes: &entry(table, first) });
             self.replied(Rule::Address, &request, Vec::new())?;
         }
         for (table, first) in places {
