@@ -59,12 +59,11 @@ pub(crate) fn payloads_that_are_too_short_are_refused(on: &dyn Boards) {
 
 pub(crate) fn fields_without_meaning_are_refused(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
-    for (kind, payload) in [
-        (Kind::Reset, [3, 0, 0, 0, 0, 0, 0]),
-        (Kind::TableRead, [2, 0, 0, 0, 0, 0, 0]),
-        (Kind::TableCrc, [0, 2, 0, 0, 0, 0, 0]),
-        (Kind::TableWrite, [0xff, 0, 0, 0, 0, 0, 0]),
-    ] {
+    let tables_and_banks = [[2, 0], [0xff, 0], [0, 2], [0, 3], [0, 0xff]];
+    let spans = [Kind::TableWrite, Kind::TableRead, Kind::TableCrc]
+        .into_iter()
+        .flat_map(|kind| tables_and_banks.map(|[table, bank]| (kind, [table, bank, 0, 0, 0, 0, 0])));
+    for (kind, payload) in spans.chain([(Kind::Reset, [3, 0, 0, 0, 0, 0, 0])]) {
         let header = bench.header(kind.code());
         assert_eq!(bench.answer(&header, &payload).refusal(), Some((RefusalCode::Payload, 0)), "{kind:?}");
     }

@@ -167,7 +167,7 @@ fn pauses_make_frames_no_frames_at_speed_and_not_wrong() {
 #[test]
 fn why_nothing_was_tested_at_speed_is_said() {
     let (none, other) = (NoBurst::BoardMakesNone {}, NoBurst::ContentUnknown { content: 2, known: 1 });
-    let without = judge_claims(&TINY, |board| board.bursts = None);
+    let without = TINY.judge(",bursts=no");
     let unknown = judge_claims(&TINY, |board| {
         board.bursts.iter_mut().for_each(|bursts| bursts.content = 2);
     });

@@ -17,7 +17,7 @@ fn altering(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static)
 }
 
 /// The report on a board that receives packets of `kind` as `alter` changes them.
-fn hearing(kind: Kind, alter: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
+pub(super) fn hearing(kind: Kind, alter: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
     altering(move |toward, mut packet| {
         if toward == Toward::Board && packet.is(kind) {
             alter(&mut packet.payload);
@@ -280,7 +280,7 @@ fn entries_are_written_and_summed_up_where_they_are_asked_for() {
 
 #[test]
 fn tables_of_the_other_bank_are_written_while_a_row_is_inside() {
-    let is_empty = |payload: &[u8]| payload.len() == 7;
+    let is_empty = |payload: &[u8]| payload == [0; 7];
     let report = answering(Kind::TableWrite, is_empty, |packet| {
         let refusal = Refusal { code: RefusalCode::Busy, kind: Kind::TableWrite.code(), detail: 0 };
         packet.saying(&Reply::Refusal(refusal))

@@ -102,41 +102,6 @@ fn what_a_record_may_say_is_not_looked_at() {
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
 
-/// How often a sound board refuses something in the run.
-fn refusals_of_a_sound_board() -> usize {
-    let (sender, refused) = std::sync::mpsc::channel();
-    let report = saying(move |packet| {
-        refusal(&packet).into_iter().for_each(|it| sender.send(it).unwrap());
-        Some(packet)
-    });
-    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
-    refused.iter().count()
-}
-
-#[test]
-fn each_refusal_that_does_not_come_fails() {
-    let refusals = refusals_of_a_sound_board();
-    assert!(refusals > 400, "{refusals}");
-    let mut rules = Vec::new();
-    for place in (0..refusals).step_by(17) {
-        let mut count = 0;
-        let report = saying(move |packet| {
-            let Some(refusal) = refusal(&packet) else { return Some(packet) };
-            count += 1;
-            Some(if count == place + 1 { carried_out(&packet, refusal) } else { packet })
-        });
-        let (rule, right, found) = broken(&report);
-        assert!(
-            matches!(right, Answer::Refused { .. }) && matches!(found, Answer::Replied { .. }),
-            "{rule:?}"
-        );
-        if !rules.contains(&rule) {
-            rules.push(rule);
-        }
-    }
-    assert!(rules.len() > 8, "{rules:?}");
-}
-
 #[test]
 fn a_refusal_for_another_reason_or_with_another_detail_fails() {
     for detail in [false, true] {

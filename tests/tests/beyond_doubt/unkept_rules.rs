@@ -1,13 +1,104 @@
 //! Boards that are sound except for one rule, which only a request breaks that no host makes.
 
 use halfrow::board::RefusalCode;
-use halfrow::result::Rule;
+use halfrow::result::{Answer, Rule};
+use halfrow_mock::Options;
 use halfrow_protocol::message::Refusal;
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::Passing;
+use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims_by};
+use halfrow_tests::system::judge_by_plan;
 
-use super::rule_by_rule::answering;
-use super::rules::broken;
+use super::rule_by_rule::{answering, hearing};
+use super::rules::{broken, carried_out, plan, refusal, said_by};
+
+/// The kinds of which an empty packet is no answer to a request of the same kind; and the one that is refused only when the session
+/// is closed, where no counter tells what a link did.
+const LEFT_ALONE: [Kind; 4] = [Kind::Hello, Kind::RowOut, Kind::Refusal, Kind::Status];
+
+/// The refusal in `packet`, unless it is of one of those kinds.
+fn refusal_of_request(packet: &Passing) -> Option<Refusal> {
+    refusal(packet).filter(|refusal| LEFT_ALONE.iter().all(|kind| kind.code() != refusal.kind))
+}
+
+/// How often a sound board refuses a request in the run.
+fn refusals_of_a_sound_board() -> usize {
+    let (sender, refused) = std::sync::mpsc::channel();
+    let report = said_by(&Options::default(), move |packet| {
+        refusal_of_request(&packet).into_iter().for_each(|it| sender.send(it).unwrap());
+        Some(packet)
+    });
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+    refused.iter().count()
+}
+
+#[test]
+fn each_refusal_that_does_not_come_fails() {
+    let refusals = refusals_of_a_sound_board();
+    assert!(refusals > 400, "{refusals}");
+    let mut rules = Vec::new();
+    for place in (0..refusals).step_by(17) {
+        let mut count = 0;
+        let report = said_by(&Options::default(), move |packet| {
+            let Some(refusal) = refusal_of_request(&packet) else { return Some(packet) };
+            count += 1;
+            Some(if count == place + 1 { carried_out(&packet, refusal) } else { packet })
+        });
+        let (rule, right, found) = broken(&report);
+        assert!(
+            matches!(right, Answer::Refused { .. }) && matches!(found, Answer::Replied { .. }),
+            "{rule:?}"
+        );
+        if !rules.contains(&rule) {
+            rules.push(rule);
+        }
+    }
+    assert!(rules.len() > 8, "{rules:?}");
+}
+
+const SPANS: [Kind; 3] = [Kind::TableWrite, Kind::TableRead, Kind::TableCrc];
+
+/// The rule that a board breaks which takes the byte `at` in requests of `kind`, if it is `given`, for `taken`.
+fn mistaking(options: &Options, kind: Kind, at: usize, [given, taken]: [u8; 2]) -> Rule {
+    let altered = Altered::new(options, move |toward, mut packet: Passing| {
+        if toward == Toward::Board
+            && packet.is(kind)
+            && let Some(byte) = packet.payload.get_mut(at).filter(|byte| **byte == given)
+        {
+            *byte = taken;
+        }
+        vec![packet]
+    });
+    broken(&judge_by_plan(&plan(), altered.candidate())).0
+}
+
+#[test]
+fn a_level_or_table_or_bank_without_meaning_is_taken_for_no_other() {
+    let (any, gridless) = (Options::default(), Options { datapath2: false, ..Options::default() });
+    assert_eq!(mistaking(&any, Kind::Reset, 0, [3, 0]), Rule::Payload);
+    for kind in SPANS {
+        for (options, at, mistaken) in
+            [(&any, 0, [2, 0]), (&any, 1, [2, 0]), (&any, 1, [3, 1]), (&gridless, 0, [3, 0])]
+        {
+            assert_eq!(mistaking(options, kind, at, mistaken), Rule::Payload, "{kind}, {at}: {mistaken:?}");
+        }
+    }
+}
+
+/// What the buffer still holds is taken for what is missing.
+#[test]
+fn entries_and_signatures_that_are_cut_short_are_not_written() {
+    for (kind, count, fields) in [(Kind::TableWrite, 5, 7), (Kind::Expect, 2, 4)] {
+        let report = hearing(kind, move |payload| {
+            if let Some(&entries) = payload.get(count)
+                && payload.len() > fields
+                && payload[0] == 0
+            {
+                payload.resize(payload.len().max(fields + 4 * usize::from(entries)), 0);
+            }
+        });
+        assert_eq!(broken(&report).0, Rule::Payload, "{kind}");
+    }
+}
 
 #[test]
 fn the_port_of_a_write_is_not_looked_at() {
@@ -15,4 +106,16 @@ fn the_port_of_a_write_is_not_looked_at() {
     let refused = move |packet: Passing| packet.saying(&Reply::Refusal(refusal));
     let report = answering(Kind::TableWrite, |payload| payload.get(2) > Some(&1), refused);
     assert_eq!(broken(&report).0, Rule::Address);
+}
+
+/// The board has bursts and denies it, or has a trap and denies that.
+#[test]
+fn what_a_board_does_not_have_it_refuses_by_its_kind() {
+    let without_bursts = judge_claims_by(&plan(), |board| board.bursts = None);
+    let without_trap = judge_claims_by(&plan(), |board| {
+        board.bursts.iter_mut().for_each(|bursts| bursts.trap = false);
+    });
+    for report in [without_bursts, without_trap] {
+        assert_eq!(broken(&report).0, Rule::Kind, "{}", report.headline());
+    }
 }

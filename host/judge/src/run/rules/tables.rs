@@ -14,7 +14,7 @@ use crate::tables::Generation;
 
 const NODE_COUNT: u16 = NODES as u16;
 /// A row factor, and a grid entry, that is right and that the small tables have nowhere.
-const RIGHT: u32 = 1;
+pub(super) const RIGHT: u32 = 1;
 /// Where entries are tried to be written: not where a place in the packet and one in the table have the same number.
 pub(super) const PLACE: u16 = 1;
 
