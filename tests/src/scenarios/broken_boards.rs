@@ -148,6 +148,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=place-in-packet",
         "as `range`, detail 2, but it refused it as `range`, detail 1",
     ),
+    fails(
+        "a refused acknowledgement",
+        ",fault=unkept-rule,instead=ack-refused",
+        "the board must leave ROW_ACK unanswered, but it refused it as `session`",
+    ),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

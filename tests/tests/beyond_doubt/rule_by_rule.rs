@@ -12,7 +12,7 @@ use halfrow_tests::system::{failed_check, judge_by_plan};
 use super::rules::{broken, carried_out, plan, refusal, said_by};
 
 /// The report on a board with packets that `alter` rewrites, each into those that it returns.
-fn altering(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
+pub(super) fn altering(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
     judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate())
 }
 

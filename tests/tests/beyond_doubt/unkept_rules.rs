@@ -1,14 +1,15 @@
 //! Boards that are sound except for one rule, which only a request breaks that no host makes.
 
 use halfrow::board::RefusalCode;
-use halfrow::result::{Answer, Rule};
+use halfrow::result::{Answer, Finding, Rule};
+use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::Refusal;
-use halfrow_protocol::{Kind, Reply};
+use halfrow_protocol::{Header, Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims_by};
 use halfrow_tests::system::judge_by_plan;
 
-use super::rule_by_rule::{answering, hearing};
+use super::rule_by_rule::{altering, answering, hearing};
 use super::rules::{broken, carried_out, plan, refusal, said_by};
 
 /// The kinds of which an empty packet is no answer to a request of the same kind; and the one that is refused only when the session
@@ -118,4 +119,19 @@ fn what_a_board_does_not_have_it_refuses_by_its_kind() {
     for report in [without_bursts, without_trap] {
         assert_eq!(broken(&report).0, Rule::Kind, "{}", report.headline());
     }
+}
+
+/// In its own session.
+#[test]
+fn an_acknowledgement_is_not_answered() {
+    let mut answers = Vec::new();
+    let report = altering(move |toward, packet| {
+        if toward == Toward::Board && packet.is(Kind::RowAck) {
+            let header = Header { reply: true, ..packet.header };
+            answers.push(Passing { header, payload: Vec::new() });
+        }
+        if toward == Toward::Board { vec![packet] } else { answers.drain(..).chain([packet]).collect() }
+    });
+    let is_told = matches!(report.finding, Finding::RuleBroken { rule: Rule::Unanswered, .. });
+    assert!(report.verdict() == Verdict::Fail && is_told, "{}", report.headline());
 }

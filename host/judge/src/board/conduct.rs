@@ -40,6 +40,11 @@ pub(crate) enum Misconduct {
         /// The count of repeats in both.
         repeats: u16,
     },
+    /// A `ROW_ACK` was answered.
+    AckAnswered {
+        /// The refusal; none for a reply.
+        refusal: Option<Refusal>,
+    },
     /// A row left the board after a later one, by the board's own numbering of its packets.
     OutOfOrder {
         /// The row that came too late.
@@ -158,6 +163,19 @@ impl Conduct {
 
     fn note(&mut self, misconduct: Misconduct) {
         self.misconduct.get_or_insert(misconduct);
+    }
+
+    /// Takes any packet, whatever session it names: no board may answer anybody's acknowledgement. The flag tells an answer from the
+    /// host's own packet that a line echoes.
+    pub(super) fn any_packet(&mut self, packet: &Packet<'_>) {
+        let refusal = match Reply::read(packet) {
+            _ if !packet.header.reply => return,
+            Ok(Reply::Refusal(refusal)) if refusal.kind == Kind::RowAck.code() => Some(refusal),
+            _ => None,
+        };
+        if refusal.is_some() || packet.header.kind == Kind::RowAck.code() {
+            self.note(Misconduct::AckAnswered { refusal });
+        }
     }
 
     /// Takes a row or the refusal of one; rows before `sent` have been sent.

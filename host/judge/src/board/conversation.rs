@@ -279,12 +279,12 @@ impl Conversation {
         mut take: impl FnMut(&Packet<'_>),
     ) -> Result<(), BoardError> {
         self.stop.check(self.now(), self.since(self.heard_at))?;
-        let moved = self.move_bytes(wait);
-        moved.map_err(|source| BoardError::of_link(doing(), source))?;
+        self.move_bytes(wait).map_err(|source| BoardError::of_link(doing(), source))?;
         let now = self.link.now();
         let mut strays = Vec::new();
         let mut bytes = self.incoming.as_slice();
         while let Some(packet) = self.decoder.next(&mut bytes) {
+            packet.iter().for_each(|packet| self.session.conduct.any_packet(packet));
             match packet {
                 Ok(packet) if packet.header.session == self.session.number || self.session.number == 0 => {
                     self.heard_at = now;

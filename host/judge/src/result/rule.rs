@@ -24,6 +24,8 @@ pub enum Rule {
     Damage,
     /// A request is answered once.
     Once,
+    /// An acknowledgement of rows is never answered.
+    Unanswered,
     /// A packet of another session is refused, and has no effect.
     Session,
     /// A board that another host holds refuses HELLO, and says for how long, unless that host takes it over.

@@ -145,6 +145,7 @@ fn reason(code: u8) -> String {
 }
 
 /// The rule as a clause.
+#[expect(clippy::too_many_lines, reason = "one line a rule")]
 pub(super) fn meaning(rule: Rule) -> &'static str {
     match rule {
         Rule::Payload => "a request cut short, or with a field without meaning, must be refused",
@@ -156,6 +157,7 @@ pub(super) fn meaning(rule: Rule) -> &'static str {
         Rule::Address => "an entry must be written where it belongs and read from there",
         Rule::Damage => "a damaged packet must have no effect",
         Rule::Once => "each request must have one answer, and most had two",
+        Rule::Unanswered => "an acknowledgement of rows must never be answered",
         Rule::Session => "a packet of another session must have no effect",
         Rule::Held => "a board must be held for 10 s after its holder's last packet, but can be taken over",
         Rule::NewSession => "a greeting must open the next session, which keeps only tables and settings",

@@ -3,14 +3,15 @@
 use std::sync::mpsc::Receiver;
 
 use halfrow_model::TableSet;
-use halfrow_protocol::message::RowPlace;
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{Refusal, RowPlace};
 
 use super::observations::Observations;
 use super::pauses::pauses;
 use super::prepared::{PrepareError, Prepared};
 use super::row_judge::{JudgeOptions, RowJudge};
 use crate::board::{BoardError, MAX_LATENCY, Misconduct, row_blanking};
-use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, PlacedRow, RepeatedRow};
+use crate::result::{Answer, CheckName, Finding, FrameTiming, NumberedRow, PlacedRow, RepeatedRow, Rule};
 use crate::run::findings::{During, End};
 use crate::run::plan::{SENSOR_BLANKING, Segment, Timing};
 use crate::run::steps::Run;
@@ -130,6 +131,15 @@ impl Run<'_> {
             Misconduct::RepeatsStand { place, repeats } => {
                 Finding::RowRepeatsStand(RepeatedRow { row: place.row, frame: place.frame, repeats, rules })
             }
+            Misconduct::AckAnswered { refusal } => Finding::RuleBroken {
+                rule: Rule::Unanswered,
+                request: Kind::RowAck.to_string(),
+                right: Answer::Nothing {},
+                found: refusal.map_or_else(
+                    || Answer::Replied { payload: "a reply".to_owned() },
+                    |Refusal { code, detail, .. }| Answer::Refused { code: code as u8, detail },
+                ),
+            },
             Misconduct::OutOfOrder { place } => {
                 Finding::RowOutOfOrder(PlacedRow { row: place.row, frame: place.frame, rules })
             }
