@@ -1,7 +1,7 @@
-//! Boards that are sound except for one rule, which only a request breaks that no host makes.
+//! Boards that are sound except for one rule, which only a request breaks that no host makes, or which only a header shows.
 
 use halfrow::board::RefusalCode;
-use halfrow::result::{Answer, Finding, Rule};
+use halfrow::result::{Answer, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::Refusal;
@@ -118,6 +118,52 @@ fn what_a_board_does_not_have_it_refuses_by_its_kind() {
     });
     for report in [without_bursts, without_trap] {
         assert_eq!(broken(&report).0, Rule::Kind, "{}", report.headline());
+    }
+}
+
+/// The report on a board that changes the headers of what `is_meant`.
+fn heading(is_meant: fn(&Passing) -> bool, change: fn(&mut Header)) -> Report {
+    said_by(&Options::default(), move |mut packet| {
+        if is_meant(&packet) {
+            change(&mut packet.header);
+        }
+        Some(packet)
+    })
+}
+
+#[test]
+fn the_reply_to_a_greeting_is_the_first_packet_of_its_session() {
+    let changes: [fn(&mut Header); 4] = [
+        |header| header.session = 0,
+        |header| header.session = header.session.wrapping_sub(1),
+        |header| header.window = 0,
+        |header| header.window += 1,
+    ];
+    for (place, change) in changes.into_iter().enumerate() {
+        let report = heading(|packet| packet.is(Kind::Hello), change);
+        assert_eq!(broken(&report).0, Rule::NewSession, "{place}");
+    }
+}
+
+#[test]
+fn a_refusal_of_a_greeting_belongs_to_no_session() {
+    for code in [RefusalCode::Held, RefusalCode::Version] {
+        let report = said_by(&Options::default(), move |mut packet| {
+            if refusal(&packet).is_some_and(|refusal| refusal.code == code) {
+                packet.header.session = 7;
+            }
+            Some(packet)
+        });
+        assert_eq!(broken(&report).0, Rule::NewSession, "{code}: {}", report.headline());
+    }
+}
+
+#[test]
+fn a_refused_row_leaves_the_window_where_it_is() {
+    let changes: [fn(&mut Header); 2] = [|header| header.window = 0, |header| header.window -= 1];
+    for change in changes {
+        let of_row = |packet: &Passing| refusal(packet).is_some_and(|it| it.kind == Kind::RowIn.code());
+        assert_eq!(broken(&heading(of_row, change)).0, Rule::Window);
     }
 }
 

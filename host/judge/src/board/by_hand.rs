@@ -6,7 +6,7 @@ use std::iter;
 use halfrow_protocol::message::{
     Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace, Status,
 };
-use halfrow_protocol::{Kind, Packet, samples};
+use halfrow_protocol::{Header, Kind, Packet, samples};
 
 use super::answer::{OwnedPacket, status_in, take_reply};
 use super::deadlines::Step;
@@ -114,6 +114,11 @@ impl Board {
     pub(crate) fn ask(&mut self, kind: Kind, payload: &[u8]) -> Result<Response, BoardError> {
         let answer = self.conversation.ask(&Outgoing::Bytes(kind, payload), Step::Request, |_| true)?;
         said(kind, &answer)
+    }
+
+    /// The header of the board's last answer.
+    pub(crate) fn answered(&self) -> Header {
+        self.conversation.answered
     }
 
     /// Sends a row without waiting, and returns the number of its packet.

@@ -81,6 +81,8 @@ pub(super) struct Conversation {
     refused: u64,
     /// What the board counts of the packets sent.
     pub(super) counted: Counted,
+    /// The header of the last answer to a request that was waited for.
+    pub(super) answered: Header,
     /// Whether to ask for that count wherever a packet may have been lost unnoticed.
     pub(super) counts: bool,
     lateness: Lateness,
@@ -107,6 +109,7 @@ impl Conversation {
             spent: Duration::ZERO,
             refused: 0,
             counted: Counted::default(),
+            answered: Header::default(),
             counts: options.counts,
             lateness: Lateness::default(),
             heard_at: Duration::ZERO,

@@ -29,6 +29,7 @@ impl Conversation {
             self.count_after(retries);
             self.count_doubled();
         }
+        self.answered = answer.header;
         Ok(answer)
     }
 

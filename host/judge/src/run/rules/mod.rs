@@ -10,6 +10,7 @@ mod compared;
 mod configurations;
 mod counts;
 mod depths;
+mod greetings;
 mod grids;
 mod power_up;
 mod price;
@@ -23,6 +24,7 @@ mod tables;
 mod trap;
 mod waiting;
 mod wide;
+mod windows;
 mod without_effect;
 
 use std::mem;

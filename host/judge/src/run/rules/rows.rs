@@ -14,7 +14,6 @@ use crate::reference::correct;
 use crate::result::{CheckName, Counter, Doubt, Rule};
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::{During, End};
-use crate::run::sessions::window::window_wrong;
 use crate::tables::Generation;
 use crate::verdict::Cause;
 
@@ -133,6 +132,7 @@ impl Rules<'_, '_> {
         for place in wrong {
             self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
         }
+        self.window_stays()?;
         self.odd_rows(first)?;
         let credit = self.run.board.credit();
         self.marked_row_refused(Rule::RowPlace, second, RefusalCode::Row)?;
@@ -161,22 +161,6 @@ impl Rules<'_, '_> {
         for bytes in [whole.len() - 1, PLACE, PLACE - 1] {
             self.bytes_refused(Rule::Payload, Kind::RowIn, &whole[..bytes], RefusalCode::Payload, 0)?;
         }
-        Ok(())
-    }
-
-    /// After a RESET no row is inside, so the window must be as far ahead as there are input banks.
-    fn window(&mut self) -> Result<(), End> {
-        let rows = self.run.board.credit_after_reset().during(CheckName::Rules)?;
-        self.must_have_credit(rows)
-    }
-
-    /// After a RESET the board must give credit for as many rows as it has input banks.
-    pub(super) fn must_have_credit(&mut self, rows: u32) -> Result<(), End> {
-        let banks = self.capabilities.row_banks_in.into();
-        if rows != banks {
-            return Err(End::failed(CheckName::Rules, window_wrong(banks, rows)));
-        }
-        self.right += 1;
         Ok(())
     }
 

@@ -3,22 +3,22 @@
 use std::time::Duration;
 
 use halfrow_protocol::message::{
-    Burst, BurstMode, Commit, Entries, Records, Refusal, RefusalCode, Request, Span, Table, Welcome,
+    Burst, BurstMode, Commit, Entries, Records, Refusal, RefusalCode, Request, Span, Table,
 };
 use halfrow_protocol::{Kind, VERSION};
 
 use super::bursts::Awaited;
 use super::counts::equal;
+use super::greetings::another_session;
 use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
 use super::{FIRST_FACTOR, Refusals, Rules, broken};
 use crate::board::{Board, BoardError, Given, Response, Status};
-use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Identity, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::at_speed::known_bursts;
 use crate::run::findings::{During, End};
 use crate::run::frames::counters::rows_numbered;
 use crate::tables::Generation;
-use crate::verdict::Cause;
 
 /// How often a board must do what it must not, where a link or the board's supply could cause it too, though not every
 /// time: a late copy of an old HELLO also opens a session.
@@ -30,8 +30,6 @@ const SURELY_HELD: Duration = Duration::from_secs(5);
 const NOT_SPOKEN: [[u8; 2]; 2] = [[0, 0], [u8::MAX, u8::MAX]];
 /// The greatest version that a refusal may name as the board's newest.
 const MOST_VERSION: u16 = u8::MAX as u16 - 1;
-/// A row sequence number below the greatest that the rules reach, and far from any that they used.
-const SMALLER: u32 = 3 << 29;
 /// The frame for which a commit is pending when its session ends, and the generation that it would make.
 const PENDING: (u16, u8) = (0x4321, 0x3c);
 /// Frames of a burst that have been made when its session ends: every board has records for two.
@@ -115,7 +113,7 @@ impl Rules<'_, '_> {
             }
             said => said,
         });
-        self.judge(Rule::Held, Kind::Hello, said, &Response::Refused(right))
+        self.greeting_refused(Rule::Held, said, right)
     }
 
     /// Another host that takes the board over must get it, whoever holds it.
@@ -152,15 +150,9 @@ impl Rules<'_, '_> {
             }
             let (code, kind) = (RefusalCode::Version, Kind::Hello.code());
             let right = Refusal { code, kind, detail: VERSION.into() };
-            self.judge(Rule::NewSession, Kind::Hello, said, &Response::Refused(right))?;
+            self.greeting_refused(Rule::NewSession, said, right)?;
         }
         Ok(())
-    }
-
-    /// After a RESET to a smaller number the window must be as far ahead of that one as there are input banks.
-    fn window_goes_down(&mut self) -> Result<(), End> {
-        let rows = self.run.board.credit_after_reset_to(SMALLER).during(CheckName::Rules)?;
-        self.must_have_credit(rows)
     }
 
     /// The HELLO that opened the session, repeated, must open no other one.
@@ -173,6 +165,10 @@ impl Rules<'_, '_> {
                 // The window is not known until the board has answered in the new session.
                 rules.status()?;
                 return Err(another_session(own, again.session));
+            }
+            let named = rules.run.board.answered().session;
+            if named != own {
+                return Err(another_session(own, named));
             }
             rules.same_board(&again)?;
             rules.right += 1;
@@ -295,28 +291,6 @@ impl Rules<'_, '_> {
         self.same_board_greets()
     }
 
-    /// The board must have said in its answer to the last greeting who it is, as in its first one.
-    fn same_board_greets(&mut self) -> Result<(), End> {
-        let welcome = self.run.board.welcome;
-        self.same_board(&welcome)
-    }
-
-    /// The same of the answer `welcome`. One that names another board may come from another board, unless the tables are still there.
-    fn same_board(&mut self, welcome: &Welcome) -> Result<(), End> {
-        let Some(first) = &self.run.findings.board.identity else { return Ok(()) };
-        let now = Identity::of(welcome, &self.capabilities);
-        let [right, found] = [first, &now].map(|Identity { build, serial, .. }| Answer::Replied {
-            payload: format!("build {build} and serial number {serial}"),
-        });
-        if right == found {
-            return Ok(());
-        }
-        if self.status()?.generation == 0 {
-            return Err(End::error(CheckName::Identity, Cause::Refused, Finding::BoardExchanged {}));
-        }
-        Err(broken(Rule::NewSession, Kind::Hello, right, found))
-    }
-
     fn greet(&mut self) -> Result<(), BoardError> {
         self.greet_by(Board::open_another_session)
     }
@@ -381,9 +355,4 @@ impl Rules<'_, '_> {
 /// The number that follows `session`: 1 after 255.
 fn next(session: u8) -> u8 {
     session % u8::MAX + 1
-}
-
-fn another_session(right: u8, found: u8) -> End {
-    let [right, found] = [right, found].map(|number| Answer::Session { number });
-    broken(Rule::NewSession, Kind::Hello, right, found)
 }

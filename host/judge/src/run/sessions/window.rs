@@ -29,15 +29,15 @@ impl Run<'_> {
             .collect();
         match credits.last() {
             Some(&rows) if credits.len() == TIMES as usize => {
-                End::failed(end.check(), window_wrong(banks, rows))
+                End::failed(end.check(), window_wrong(Kind::Reset, banks, rows))
             }
             _ => end,
         }
     }
 }
 
-/// After a RESET the board gives credit for `rows` instead of one for each of its `banks`.
-pub(crate) fn window_wrong(banks: u32, rows: u32) -> Finding {
+/// After a RESET the board gives credit for `rows`, in its answer to a request of `kind`, instead of one for each of its `banks`.
+pub(crate) fn window_wrong(kind: Kind, banks: u32, rows: u32) -> Finding {
     let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });
-    Finding::RuleBroken { rule: Rule::Window, request: Kind::Reset.to_string(), right, found }
+    Finding::RuleBroken { rule: Rule::Window, request: kind.to_string(), right, found }
 }
