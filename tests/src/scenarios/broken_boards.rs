@@ -153,6 +153,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=ack-refused",
         "the board must leave ROW_ACK unanswered, but it refused it as `session`",
     ),
+    fails(
+        "any row behind one that waits",
+        ",fault=unkept-rule,instead=any-follower",
+        "took it without an answer (rule: a row out of place must be refused)",
+    ),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

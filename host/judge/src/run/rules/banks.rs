@@ -1,7 +1,7 @@
 //! Rows that a board keeps in its output banks until the host has them: as many as there are banks, no more (WIRE.md, 4).
 
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::RowPlace;
+use halfrow_protocol::message::{RefusalCode, RowPlace};
 
 use super::compared::Compared;
 use super::counts::equal;
@@ -149,9 +149,16 @@ impl Rules<'_, '_> {
     fn stay_away(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let made = self.small.made(0, self.height, GENERATION);
         let (all, mut next_row_in) = (kept.first + kept.banks + WAITING, 0);
+        let mut is_behind_waiting = kept.height == 1;
         for look in 0..TRIES {
             kept.is_exact = look == 0;
             for row in kept.banks..kept.banks + WAITING {
+                if row > kept.banks && !is_behind_waiting {
+                    is_behind_waiting = self.must_follow(kept, row)?;
+                    if !is_behind_waiting {
+                        break;
+                    }
+                }
                 let place = kept.place(row);
                 let NumberedFrame { frame, .. } = self.small.frame(place.frame, &made.tables);
                 let number = self.run.board.give(&place, frame.row(place.row.into()));
@@ -168,6 +175,18 @@ impl Rules<'_, '_> {
         }
         let not_taken = counter_wrong(Some(Rule::Banks), Counter::NextRowIn, next_row_in, all);
         Err(doubted(not_taken, Doubt::AnswerLost {}))
+    }
+
+    /// A row of another frame behind the one that waits must be refused. Returns whether that was tried: if the row before `row` has
+    /// not come, any would be taken. Nor may `row` itself have been given, of which a late copy would make the other one known.
+    fn must_follow(&mut self, kept: &FilledBanks, row: u32) -> Result<bool, End> {
+        let place = kept.place(row);
+        if self.status()?.next_row_in != place.row_sequence {
+            return Ok(false);
+        }
+        let other = RowPlace { frame: place.frame ^ 1, ..place };
+        self.row_refused(Rule::RowPlace, other, RefusalCode::Row)?;
+        Ok(true)
     }
 
     /// Sends a row again that the board has and that needs no answer, with other samples.
@@ -289,7 +308,7 @@ impl Rules<'_, '_> {
             &[
                 more(Counter::RowsRepeated, *asked),
                 more(Counter::RowsUnneeded, *unneeded),
-                more(Counter::Refusals, 0),
+                more(Counter::Refusals, u32::from(kept.height > 1)),
             ],
         )
     }
