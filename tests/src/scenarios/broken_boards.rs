@@ -158,6 +158,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=any-follower",
         "took it without an answer (rule: a row out of place must be refused)",
     ),
+    fails(
+        "an acknowledgement of rows that were never sent",
+        ",fault=unkept-rule,instead=ack-beyond",
+        "as the first row that is not acknowledged (next_row_out)",
+    ),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

@@ -43,6 +43,7 @@ impl Rules<'_, '_> {
         self.configurations()?;
         self.depths()?;
         self.first_rows()?;
+        self.thrice(Self::ack_beyond)?;
         if self.height > 2 {
             self.second_rows()?;
             self.last_rows()?;

@@ -3,7 +3,8 @@
 use halfrow_protocol::Kind;
 
 use super::Rules;
-use crate::result::CheckName;
+use super::counts::equal;
+use crate::result::{CheckName, Counter, Rule};
 use crate::run::findings::{During, End};
 use crate::run::sessions::window::window_wrong;
 
@@ -28,6 +29,18 @@ impl Rules<'_, '_> {
         let board = &self.run.board;
         let rows = board.answered().window.saturating_sub(board.acknowledged());
         self.must_have_credit(Kind::RowIn, rows)
+    }
+
+    /// An acknowledgement of rows that the board has not sent must count as far as it has sent them. The rows after it begin behind
+    /// those, so that a late copy acknowledges none of them.
+    pub(super) fn ack_beyond(&mut self) -> Result<(), End> {
+        self.drop_rows()?;
+        let (right, beyond) = (self.run.board.acknowledged(), self.run.board.credit());
+        self.run.board.acknowledge_alone(beyond);
+        let status = self.status()?;
+        equal(Some(Rule::Banks), &status, &[(Counter::NextRowOut, right)])?;
+        self.right += 1;
+        self.drop_rows()
     }
 
     /// After a RESET the board must give credit for as many rows as it has input banks. It gave it for `rows` in its answer to
