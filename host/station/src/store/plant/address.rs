@@ -102,7 +102,8 @@ impl PlantAddress {
     #[must_use]
     pub(super) fn hasty(&self) -> Self {
         let mut hasty = Self { patience: Some(HASTY), ..self.clone() };
-        hasty.config.connect_timeout(HASTY).tcp_user_timeout(HASTY);
+        // It holds for each address of a name, of which the first may be gone.
+        hasty.config.connect_timeout(HASTY / 2).tcp_user_timeout(HASTY);
         hasty
     }
 
@@ -151,5 +152,20 @@ fn is_near(host: &Host) -> bool {
     match host {
         Host::Unix(_) => true,
         Host::Tcp(name) => trust::is_near(name),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The name of the server may have two addresses, of which the first is gone.
+    #[test]
+    fn a_hasty_connection_has_time_for_a_second_address() {
+        let address = PlantAddress::new("postgres://halfrow@db.example/plant", None, None).unwrap();
+        let ordinary = address.config.get_connect_timeout().unwrap();
+        assert!(2 * *ordinary <= address.patience.unwrap(), "the control");
+        let hasty = address.hasty();
+        assert!(2 * *hasty.config.get_connect_timeout().unwrap() <= hasty.patience.unwrap());
     }
 }
