@@ -224,7 +224,8 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
     }
     let (parts, body) = request.into_parts();
     let body = time::timeout(FORM, body::to_bytes(body, MOST)).await;
-    let body = body.map_err(|_| refused(visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late")))?;
+    let body =
+        body.map_err(|_| refused(visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late_form")))?;
     let body = body.map_err(|_| refused(visit, StatusCode::PAYLOAD_TOO_LARGE, visit.say("trouble.large")))?;
     if !mark(&body).is_some_and(|mark| app.access().is_form_mark(&visit.session, &mark)) {
         return Err(unmarked());
