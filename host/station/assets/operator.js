@@ -147,13 +147,13 @@ function hook({ lane, serial, said }) {
 async function today() {
   if (!todayIsStale) return;
   todayIsStale = false;
-  const counted = await fetch("/today").catch(() => undefined);
-  if (!counted?.ok) {
+  const counted = await fetch("/today").then((answer) => answer.ok ? answer.text() : undefined).catch(() => undefined);
+  if (counted === undefined) {
     todayIsStale = true;
     return;
   }
   const footer = by("today"), isFocused = footer.contains(document.activeElement);
-  footer.innerHTML = await counted.text();
+  footer.innerHTML = counted;
   todayIsStale ||= Boolean(footer.querySelector("[data-again]"));
   if (isFocused) footer.querySelector("a")?.focus({ preventScroll: true });
 }

@@ -91,13 +91,15 @@ fn the_day_is_asked_for_until_it_was_counted() {
     let serving = station.serve();
     let mut page = Chromium::live(&serving);
     let fails = "window.asked = 0; const known = window.fetch;
-        window.fetch = (address, ...of) => address === '/today' ? (window.asked += 1, window.asked < 2 ? Promise.reject(new TypeError('away'))
-            : Promise.resolve(new Response(window.asked < 3 ? '' : 'counted', {status: window.asked < 3 ? 502 : 200}))) : known(address, ...of);
+        const cut = new ReadableStream({start: (body) => body.error(new TypeError('cut'))});
+        const answers = [() => Promise.reject(new TypeError('away')), async () => new Response('', {status: 502}),
+            async () => new Response(cut), async () => new Response('counted')];
+        window.fetch = (address, ...of) => address === '/today' ? answers[window.asked++]() : known(address, ...of);
         true";
     page.evaluate(fails);
     page.evaluate("document.getElementById('clock').textContent = '23:59:60'");
     page.wait("document.getElementById('today').textContent === 'counted'");
-    assert_eq!(page.evaluate("window.asked"), json!(3));
+    assert_eq!(page.evaluate("window.asked"), json!(4));
 }
 
 /// Ends the station of a page and starts it again; returns how many milliseconds after the last beat the page was not live, and how
