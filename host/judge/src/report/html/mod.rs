@@ -16,7 +16,7 @@ use crate::result::{Check, Evidence, Report, Suspect};
 use crate::verdict::Verdict;
 use crate::words::{board_name, plain};
 
-const STYLE: &str = include_str!("style.css");
+const STYLE: &str = include_str!("../style.css");
 
 /// Forbids the page to load or run anything, whatever text gets into it.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";

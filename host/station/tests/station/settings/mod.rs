@@ -350,7 +350,7 @@ fn known(text: &str) -> Vec<String> {
 /// The error about an unknown key refers its reader to this page.
 #[test]
 fn the_page_names_every_key() {
-    let page = include_str!("../../../../docs/station-lanes.md");
+    let page = include_str!("../../../../../docs/station-lanes.md");
     let table = page.split("\n### All settings\n").nth(1).unwrap().split("\n#").next().unwrap();
     let mut named = vec!["schema".to_owned()];
     for row in table.lines().filter(|line| line.starts_with("| `[")) {

@@ -15,7 +15,7 @@ use serde_json::Value;
 
 use crate::common::{PLAN, program};
 
-const PAGE: &str = include_str!("../../../../docs/station-plans.md");
+const PAGE: &str = include_str!("../../../../../docs/station-plans.md");
 /// A plan that uses every key.
 const WHOLE: &str = r#"schema = 1
 [plan]
