@@ -52,10 +52,10 @@ pub(crate) fn killed(child: &mut Child) -> Option<ExitStatus> {
     waited(child, KILLED)
 }
 
-/// Kills the group of a process that is no child of this one; returns whether it ended. `is_gone` tells that.
-pub(crate) fn killed_until(leader: u32, is_gone: impl Fn() -> bool) -> bool {
+/// Kills the group of a process that is no child of this one, and waits like [`killed`] until `is_gone` tells that it ended.
+pub(crate) fn killed_until(leader: u32, is_gone: impl Fn() -> bool) {
     kill(leader);
-    seen(KILLED, || is_gone().then_some(())).is_some()
+    seen(KILLED, || is_gone().then_some(()));
 }
 
 /// Kills the process group of `leader`, which may be empty already.

@@ -20,9 +20,11 @@ use crate::disk;
 use crate::engine::Engine;
 use crate::exit::Exit;
 use crate::history::PlanName;
+use crate::labgrid::LaneBoard;
 use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::{self, Outbox, PlantSink, Sink};
-use crate::run::{self as runs, Saved};
+use crate::record::RunHead;
+use crate::run::{self as runs, Recovered, Saved};
 use crate::said::Saying;
 use crate::settings::{PlanFile, PlantSettings, Settings};
 use crate::store::{Folder, SharedStore, Store};
@@ -172,11 +174,13 @@ impl<'a> Ready<'a> {
 
     /// Starts the engine, with nothing left open.
     pub(super) fn start(mut self) -> Result<Engine, Failure> {
-        let recovered = recovered(&mut self.store)?;
+        let (_, stuck) = recovered(&mut self.store)?;
         let engine =
             Engine::start(self.settings.clone(), self.store, OWN_PROGRAM.into()).map_err(Failure::error)?;
-        for Saved { record, .. } in recovered.iter().filter(|saved| saved.is_stuck) {
-            engine.stuck(&record.run.lane);
+        for (place, lane) in self.settings.lanes.iter().enumerate() {
+            if stuck.iter().any(|run| may_have(run, &lane.name, &lane.board)) {
+                engine.stuck(place);
+            }
         }
         Ok(engine)
     }
@@ -218,16 +222,25 @@ pub(super) fn sinks(settings: &Settings, store: &mut Store) -> Result<Vec<Box<dy
     Ok(sinks)
 }
 
-/// Closes the runs that were under way when the station ended, prints them, and returns them.
-pub(super) fn recovered(store: &mut Store) -> Result<Vec<Saved>, Failure> {
-    let recovered = runs::recover(store)?;
-    for Saved { record, is_stuck, .. } in &recovered {
-        let (id, serial, lane) = (&record.run.id, &record.run.serial, &record.run.lane);
+/// Closes the runs that were under way when the station ended, prints them, and returns them; with them those whose lanes'
+/// processes cannot be killed.
+pub(super) fn recovered(store: &mut Store) -> Result<(Vec<Saved>, Vec<RunHead>), Failure> {
+    let Recovered { closed, unclosed, stuck } = runs::recover(store)?;
+    for Saved { record, .. } in &closed {
+        let (id, serial) = (&record.run.id, &record.run.serial);
         console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
-        if *is_stuck {
-            let why = Saying::Unkillable;
-            console::error(&format_args!("the lane {lane} of that run may still have its board: {why}"));
-        }
     }
-    Ok(recovered)
+    if let Some(error) = unclosed {
+        return Err(error.into());
+    }
+    for RunHead { id, lane, .. } in &stuck {
+        let why = Saying::Unkillable;
+        console::error(&format_args!("the lane {lane} of the run {id} may still have its board: {why}"));
+    }
+    Ok((closed, stuck))
+}
+
+/// Whether the process of this run may have the board that is in this lane now. Either may have been renamed since.
+pub(super) fn may_have(run: &RunHead, lane: &str, board: &LaneBoard) -> bool {
+    run.lane == lane || run.target == board.to_string()
 }

@@ -11,7 +11,7 @@ use super::looking::NoRange;
 use super::outbox::{NoSink, NotDead, SinkInUse, SinkUnknown};
 use super::plant::NoStation;
 use super::publish::PublishError;
-use super::run::NoMock;
+use super::run::{NoMock, NotLetGo};
 use super::token::NoTokens;
 use super::unit::NoSuchUnit;
 use super::user::NoUsers;
@@ -55,6 +55,8 @@ codes::codes! {
     EngineEnded => "engine-ended"
     ;
     NoMock => "plan-without-mock"
+    ;
+    NotLetGo [lane] => "board-not-let-go"
     ;
     NoRange => "range-without-moment"
     ;

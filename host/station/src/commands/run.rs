@@ -13,7 +13,7 @@ use halfrow::verdict::StoppedBy;
 use halfrow_program::number::seconds;
 use serde_json::json;
 
-use super::beginning::{Disk, Signal, recovered};
+use super::beginning::{Disk, Signal, may_have, recovered};
 use super::why;
 use super::{Failure, document};
 use crate::clock;
@@ -91,7 +91,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let board = LaneBoard::Own(board);
     let signal = Signal::heed()?;
     let mut store = arguments.disk.opens(&arguments.data)?;
-    let recovered = recovered(&mut store)?;
+    let (recovered, stuck) = recovered(&mut store)?;
+    if stuck.iter().any(|run| may_have(run, &arguments.lane, &board)) {
+        return Err(Failure::error(NotLetGo { lane: arguments.lane.clone() }));
+    }
     let station = arguments.station.clone().unwrap_or_else(this_computer);
     refused_again(store.folder(), &plan, &serial, arguments)?;
     let place = InLane::of(&station, &arguments.lane, &plan);
@@ -149,6 +152,15 @@ impl Arguments {
     mock::BARCODE
 )]
 pub(super) struct NoMock;
+
+/// The process of an earlier run may still have the board.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the process of an earlier run may still have the board in lane {lane}, and cannot be killed; restart the computer"
+)]
+pub(super) struct NotLetGo {
+    pub(super) lane: String,
+}
 
 fn refused_again(folder: &Folder, plan: &Plan, serial: &str, arguments: &Arguments) -> Result<(), Failure> {
     match folder.again(plan, serial, "say --again", false)? {

@@ -52,20 +52,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let worker = worker(&settings)?;
     let signal = Signal::heed()?;
     let mut store = arguments.disk.opens(&settings.data)?;
-    recovered(&mut store)?;
+    let (_, stuck) = recovered(&mut store)?;
     let introduction = settings.introduction(store.origin()?);
     let store = SharedStore::new(store);
-    let _sending = Sending::begin(&settings, store.clone())?;
-    let plant = PlantLink::new(address);
     let work = Work {
         settings: &settings,
-        plant,
-        store,
+        plant: PlantLink::new(address),
+        store: store.clone(),
         program: OWN_PROGRAM.into(),
         worker,
         aside: Aside::default(),
     };
     let stop = || signal.by();
+    // The plant lends a board again as soon as it has its run.
+    stuck.iter().for_each(|run| work.take_out(&run.lane, &stop));
+    let _sending = Sending::begin(&settings, store)?;
     let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
     work.introduce(&introduction, !arguments.once, &stop)?;
     take_jobs(&work, arguments, at_once, &stop)?;

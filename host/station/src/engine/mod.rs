@@ -154,13 +154,9 @@ impl Engine {
         self.put(Input::Act { number, lane, act, operator: operator.to_owned(), until });
     }
 
-    /// Takes the lane of this name out of service, because a process of an earlier run may still have its board.
-    pub(crate) fn stuck(&self, lane: &str) {
-        let place = self.live.lock().lanes.iter().position(|known| known.lane == lane);
-        // A lane that the settings do not name any more gets no board, either.
-        if let Some(lane) = place {
-            self.put(Input::Heard { lane, heard: LaneEvent::Happened(Event::Stuck) });
-        }
+    /// Takes the lane at this index out of service, because a process of an earlier run may still have its board.
+    pub(crate) fn stuck(&self, lane: usize) {
+        self.put(Input::Heard { lane, heard: LaneEvent::Happened(Event::Stuck) });
     }
 
     /// All news from now on, after the present state of every lane. A listener that is too far behind hears no more.

@@ -334,22 +334,30 @@ fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<In
     is_deaf.then(|| Saying::LaneDeaf { seconds: seconds(GRACE) }.into())
 }
 
-/// Kills the lane of a run whose station ended before it, if the lane still exists, and waits until it has let go of its board;
-/// returns whether it has. It is known by its id and by when it began, because ids are reused.
-pub(crate) fn kill_left_behind(spool: &Path) -> bool {
-    let noted = fs::read_to_string(spool.join(PROCESS)).unwrap_or_default();
-    let mut words = noted.split_whitespace().map(str::parse::<u64>);
-    let (Some(Ok(id)), Some(Ok(born))) = (words.next(), words.next()) else { return true };
-    let Ok(id) = u32::try_from(id) else { return true };
-    let is_gone = || started(id) != Some(born);
-    is_gone() || killed_until(id, is_gone)
+/// Kills the lane of a run whose station ended before it, if the lane still exists, and waits until it has let go of its board.
+pub(crate) fn kill_left_behind(spool: &Path) {
+    if let Some(id) = left_behind(spool) {
+        killed_until(id, || left_behind(spool).is_none());
+    }
 }
 
-/// When a process began that has not ended, in ticks since the computer was started: fields 3 and 22 of proc_pid_stat(5), whose
-/// second field may contain blanks. Whoever should hear of the end of a process may let it wait for years.
+/// The process of the lane that wrote to this spool, if it has not ended. It is known by its id and by when it began, because ids
+/// are reused.
+pub(crate) fn left_behind(spool: &Path) -> Option<u32> {
+    let noted = fs::read_to_string(spool.join(PROCESS)).ok()?;
+    let (id, born) = noted.trim_end().split_once(' ')?;
+    let (id, born): (u32, u64) = (id.parse().ok()?, born.parse().ok()?);
+    (started(id)? == born).then_some(id)
+}
+
+/// When a process began that has not ended, in ticks since the computer was started: fields 3, 20 and 22 of proc_pid_stat(5), whose
+/// second field may contain blanks. Whoever should hear of the end of a process may let it wait for years; but the state is that of
+/// its first thread alone, and any other one may still have the board.
 fn started(id: u32) -> Option<u64> {
     let stat = fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
-    fields.next().filter(|state| !["Z", "X"].contains(state))?;
-    fields.nth(18)?.parse().ok()
+    let has_ended = ["Z", "X"].contains(&fields.next()?);
+    let threads: u64 = fields.nth(16)?.parse().ok()?;
+    let began = fields.nth(1)?.parse().ok()?;
+    (!has_ended || threads > 1).then_some(began)
 }

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
-pub use recovered::{recover, recover_run};
+pub use recovered::{Recovered, recover, recover_run};
 
 use crate::ids::NoRandomness;
 use crate::labgrid::LaneBoard;
@@ -75,8 +75,6 @@ pub struct Saved {
     pub stored: Stored,
     /// When that was, in milliseconds since 1970, UTC.
     pub saved_ms: i64,
-    /// Whether the lane's process could not be killed: it may still have the board.
-    pub is_stuck: bool,
 }
 
 /// An observer of a run, who may stop it.
@@ -180,7 +178,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     record.conclusion = record.conclusion.stopped_since(why);
     let steps = selected.steps.len() as u32;
     let finish = |record: &_| store.with(|store| store.finish(record, steps));
-    Ok(Saved { is_stuck, ..save(&folder, record, attached, finish)? })
+    save(&folder, record, attached, finish)
 }
 
 /// Refuses a plan of which a file is another one than when it was read.
@@ -337,8 +335,8 @@ fn last_suspects(steps: &[StepRecord]) -> Vec<SuspectRecord> {
     of_steps.find(|some| !some.is_empty()).cloned().unwrap_or_default()
 }
 
-/// Saves the record by `finish`, and removes the spool. Unless the run is a PASS, what the lane wrote down is attached by `attach`;
-/// it is on the disk before `finish`, the only part that needs the store.
+/// Saves the record by `finish`, and removes the spool if it is not needed any more. Unless the run is a PASS, what the lane wrote
+/// down is attached by `attach`; it is on the disk before `finish`, the only part that needs the store.
 fn save(
     folder: &Folder,
     mut record: Record,
@@ -358,10 +356,11 @@ fn save(
     let stored = saved().map_err(|source| RunError::Unsaved { run, source: Box::new(source) })?;
     let saved_ms = clock::now_ms();
     // A lane that was not started wrote nothing down.
-    if let Err(error) = fs::remove_dir_all(&spool)
+    if !recovered::is_needed(&spool)
+        && let Err(error) = fs::remove_dir_all(&spool)
         && error.kind() != io::ErrorKind::NotFound
     {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
     }
-    Ok(Saved { record, stored, saved_ms, is_stuck: false })
+    Ok(Saved { record, stored, saved_ms })
 }

@@ -1,7 +1,7 @@
 //! Runs that are found open when the station starts: the program or the computer ended in the middle of them.
 
 use std::fs::{self, File};
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::Path;
 
 use halfrow::files::written_aside::{folder_of, sync_folder};
@@ -9,11 +9,11 @@ use halfrow::files::written_aside::{folder_of, sync_folder};
 use crate::clock;
 use crate::kept::{Spool, spools};
 use crate::lane::Message;
-use crate::lane::supervisor::{EVENTS, kill_left_behind};
+use crate::lane::supervisor::{EVENTS, kill_left_behind, left_behind};
 use crate::plan::Production;
 use crate::record::{
-    BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
-    made_within,
+    BlobError, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead, SCHEMA,
+    StepRecord, made_within,
 };
 use crate::said::Saying;
 use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stored};
@@ -68,23 +68,62 @@ fn noted_claim(spool: &Path) -> Option<JobClaim> {
     serde_json::from_slice(&fs::read(spool.join(CLAIM)).ok()?).ok()
 }
 
+/// What a start of the station finds of earlier ones.
+#[derive(Debug)]
+pub struct Recovered {
+    /// The runs that were open, and are closed.
+    pub closed: Vec<Saved>,
+    /// Why another one is still open, if one is: its lane stays blocked.
+    pub unclosed: Option<RunError>,
+    /// If none is: the runs whose lanes' processes cannot be killed, and may still have their boards.
+    pub stuck: Vec<RunHead>,
+}
+
 /// Closes every open run as ERROR, cause crash, with what its lane wrote down. The verdict that it was heading for does not
 /// count: to test a board again costs a minute, a wrong PASS costs more.
 ///
 /// # Errors
-/// [`RunError`] when a run cannot be closed; its lane stays blocked. All that can be closed are closed before.
-pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
-    let open = store.open_runs().map_err(|error| RunError::NotBegun(Box::new(error)))?;
+/// [`RunError`] when the open runs are not known.
+pub fn recover(store: &mut Store) -> Result<Recovered, RunError> {
+    let open = store.open_runs().map_err(not_begun)?;
     if !open.is_empty() {
         store.folder().blobs().clear();
     }
     let folder = store.folder().clone();
     let why = |tries| Saying::StationEnded { tries };
-    let closed: Vec<_> =
-        open.into_iter().map(|open| closed(&folder, open, why, |record| store.finish(record, 0))).collect();
-    let closed = closed.into_iter().collect::<Result<_, _>>()?;
-    clear(store);
-    Ok(closed)
+    let mut recovered = Recovered { closed: Vec::new(), unclosed: None, stuck: Vec::new() };
+    for open in open {
+        match closed(&folder, open, why, |record| store.finish(record, 0)) {
+            Ok(saved) => recovered.closed.push(saved),
+            Err(error) => recovered.unclosed = recovered.unclosed.or(Some(error)),
+        }
+    }
+    if recovered.unclosed.is_none() {
+        recovered.stuck = stuck(store)?;
+        clear(store);
+    }
+    Ok(recovered)
+}
+
+fn not_begun(error: impl Into<StoreError>) -> RunError {
+    RunError::NotBegun(Box::new(error.into()))
+}
+
+/// The runs that are over, and whose lanes' processes are there all the same.
+fn stuck(store: &Store) -> Result<Vec<RunHead>, RunError> {
+    let path = store.folder().spools();
+    let listed = || fs::read_dir(&path)?.collect::<io::Result<Vec<_>>>();
+    let spools = listed().map_err(|source| not_begun(BlobError::Folder { path: path.clone(), source }))?;
+    let stuck = spools.into_iter().filter(|spool| left_behind(&spool.path()).is_some());
+    stuck
+        .map(|spool| store.saved(&spool.file_name().to_string_lossy()))
+        .map(|saved| saved.map(|(_, record)| record.run).map_err(not_begun))
+        .collect()
+}
+
+/// Whether the spool of a run that is over is still needed: by the next start, which has to know of the lane's process.
+pub(super) fn is_needed(spool: &Path) -> bool {
+    left_behind(spool).is_some()
 }
 
 /// Settles a run whose result could not be saved, once the store works again: as ERROR, cause crash, or as the store has it if
@@ -101,17 +140,18 @@ pub fn recover_run(store: &SharedStore, run: &str) -> Result<Saved, RunError> {
         return closed(&folder, open, why, |record| store.with(|store| store.finish(record, 0)));
     }
     let (stored, record) = store.with(|store| store.settled(run)).map_err(unsaved)?;
-    Ok(Saved { record, stored, saved_ms: clock::now_ms(), is_stuck: false })
+    Ok(Saved { record, stored, saved_ms: clock::now_ms() })
 }
 
-/// Removes the spools of runs that ended after their result was saved and before they could do so, and spools that are a day
-/// old and that no row names.
+/// Removes the spools of runs that ended after their result was saved and before they could do so, unless they are needed, and
+/// spools that are a day old and that no row names.
 fn clear(store: &mut Store) {
     let spools = match spools(store) {
         Ok(spools) => spools,
         Err(error) => return tracing::warn!("what earlier runs left stays where it is: {error}"),
     };
-    for Spool { name, path, is_old, .. } in spools.into_iter().filter(|spool| spool.is_over || spool.is_old) {
+    let may_go = |spool: &Spool| spool.is_old || spool.is_over && !is_needed(&spool.path);
+    for Spool { name, path, is_old, .. } in spools.into_iter().filter(may_go) {
         match fs::remove_dir_all(&path) {
             Ok(()) if is_old => tracing::warn!("{} was removed: no row names the run {name}", path.display()),
             Ok(()) => {}
@@ -132,7 +172,7 @@ fn closed(
     let OpenRun { run, plan_sha256, plan: [name, version, text] } = open;
     let spool = folder.spool(&run.id);
     let run = RunHead { job: noted_claim(&spool), ..run };
-    let is_stuck = !kill_left_behind(&spool);
+    kill_left_behind(&spool);
     let steps = told(&spool);
     let why = why(steps.len());
     let board = steps.iter().find_map(|step| step.board.clone());
@@ -156,7 +196,7 @@ fn closed(
         program: halfrow::VERSION.to_owned(),
         run,
     };
-    Ok(Saved { is_stuck, ..save(folder, record, attached_as_can_be, finish)? })
+    save(folder, record, attached_as_can_be, finish)
 }
 
 /// Whether the run could count as production when it began.

@@ -182,7 +182,7 @@ impl Work<'_> {
 
     /// Takes out a board that a process which cannot be killed may still have, so that nobody gets it. The board is held until
     /// the plant knows, or has been away for some minutes; a program that is to end tries only for a moment.
-    fn take_out(&self, board: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
+    pub(crate) fn take_out(&self, board: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
         let station = &self.worker.station;
         let why = Reason::of_program(&format!(
             "a process of station {station} may still have it, and cannot be killed; restart that computer first"

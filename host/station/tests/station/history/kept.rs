@@ -79,7 +79,7 @@ fn a_restored_folder_is_the_one_that_was_saved() {
     assert_eq!(runs(&Folder::new(&again)), runs(&made.folder()));
     // A station can work in the folder: the open run is closed, and another one can begin.
     let mut store = Store::open(&Folder::new(&again)).unwrap();
-    assert_eq!(halfrow_station::run::recover(&mut store).unwrap().len(), 1);
+    assert_eq!(halfrow_station::run::recover(&mut store).unwrap().closed.len(), 1);
 }
 
 /// The folder may be a disk of its own, whose file system has a lost+found folder.

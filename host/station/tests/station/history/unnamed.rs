@@ -320,7 +320,7 @@ fn a_spool_goes_a_day_after_its_run_was_lost_and_that_of_an_open_run_stays() {
     assert_eq!(are_there(), [true, true, false, true, true]);
     // The next start closes the open run with what is in its spool, and has no use for the other one's.
     spool(&folder, &old, 25 * HOUR);
-    assert_eq!(recover(&mut made.store).unwrap()[0].record.attachments[0].name, "events.jsonl");
+    assert_eq!(recover(&mut made.store).unwrap().closed[0].record.attachments[0].name, "events.jsonl");
     assert_eq!(are_there(), [false, false, false, true, true]);
     is_sound(&folder);
 }

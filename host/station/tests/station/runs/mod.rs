@@ -11,6 +11,7 @@ pub(crate) mod identity;
 mod killed;
 mod killed_lane;
 mod limited;
+pub(crate) mod outlived;
 mod recovered;
 mod retried;
 mod saved;

@@ -1,7 +1,7 @@
 //! What is recorded for runs that are found open.
 
 use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
-use std::process::{Child, Command};
+use std::process::Command;
 
 use halfrow_station::lane::Message;
 use halfrow_station::record::{BoardSeen, RunCause, StepOutcome};
@@ -9,7 +9,6 @@ use halfrow_station::run::{RunError, recover};
 
 use super::bench::PLAN;
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run, step};
-use crate::history::served::Served;
 
 const SHIFT: &str = "[shift]\ngood = \"CAT90001\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]";
 
@@ -32,7 +31,7 @@ fn recovered(made: Made, plan: &str) -> (String, bool) {
     database.execute("UPDATE plan SET text = $1", [plan]).unwrap();
     drop(database);
     let (_folder, mut store) = made.parts();
-    let recovered = recover(&mut store).unwrap();
+    let recovered = recover(&mut store).unwrap().closed;
     let record = &recovered[0].record;
     (record.run.serial.clone(), record.production)
 }
@@ -82,42 +81,6 @@ fn the_lane_of_a_run_that_is_found_open_is_killed() {
     lanes[1].wait().unwrap();
 }
 
-/// A process that no kill of its group reaches, and the run that it belongs to.
-struct Stuck {
-    process: Child,
-}
-
-impl Stuck {
-    /// Enters an open run in the lane 1 of `made`.
-    fn of(made: &mut Made) -> Self {
-        let spool = made.folder().spool(&made.begin(&Run::of("CAT00001", End::Open)).0.id);
-        std::fs::create_dir(&spool).unwrap();
-        // It stays in this test's group.
-        let process = Command::new("sleep").arg("600").spawn().unwrap();
-        let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.id())).unwrap();
-        let began = stat.split(' ').nth(21).unwrap();
-        std::fs::write(spool.join("lane.pid"), format!("{} {began}", process.id())).unwrap();
-        Self { process }
-    }
-}
-
-impl Drop for Stuck {
-    fn drop(&mut self) {
-        self.process.kill().unwrap();
-        self.process.wait().unwrap();
-    }
-}
-
-/// As in uninterruptible sleep: it may still have the board, beside which another run would judge the same board.
-#[test]
-fn the_lane_of_a_process_that_outlived_its_station_and_cannot_be_killed_is_out() {
-    let mut made = Made::new();
-    let _stuck = Stuck::of(&mut made);
-    let served = Served::of(made);
-    let page = served.page("/");
-    assert!(page.contains("lane out") && page.contains("its process cannot be killed"), "{page}");
-}
-
 /// A sector that is not readable; a folder in the place of the file cannot be read, either.
 #[test]
 fn a_run_that_is_found_open_is_closed_without_the_evidence_that_cannot_be_read() {
@@ -125,7 +88,7 @@ fn a_run_that_is_found_open_is_closed_without_the_evidence_that_cannot_be_read()
     let spool = made.folder().spool(&made.begin(&Run::of("CAT00001", End::Open)).0.id);
     std::fs::create_dir_all(spool.join("lane.log")).unwrap();
     std::fs::write(spool.join("events.jsonl"), "what was told\n").unwrap();
-    let recovered = recover(&mut made.store).unwrap();
+    let recovered = recover(&mut made.store).unwrap().closed;
     let names: Vec<_> = recovered[0].record.attachments.iter().map(|one| one.name.as_str()).collect();
     assert_eq!(names, ["events.jsonl"]);
     assert!(!spool.exists());
@@ -141,12 +104,12 @@ fn a_run_that_cannot_be_closed_keeps_no_other_open() {
     let refuses = "CREATE TRIGGER refuses BEFORE UPDATE ON run WHEN OLD.lane = '1'
         BEGIN SELECT RAISE(ABORT, 'not this one'); END";
     database.execute_batch(refuses).unwrap();
-    let refused = recover(&mut made.store).unwrap_err();
+    let refused = recover(&mut made.store).unwrap().unclosed.unwrap();
     assert!(matches!(refused, RunError::Unsaved { .. }), "{refused:?}");
     let open = "SELECT group_concat(lane) FROM run WHERE state = 'open'";
     assert_eq!(database.query_row(open, [], |row| row.get::<_, String>(0)).unwrap(), "1");
     database.execute_batch("DROP TRIGGER refuses").unwrap();
-    assert_eq!(recover(&mut made.store).unwrap().len(), 1);
+    assert_eq!(recover(&mut made.store).unwrap().closed.len(), 1);
 }
 
 #[test]
