@@ -10,15 +10,31 @@ use crate::record::{Attachment, BlobError, Blobs};
 use crate::said::Said;
 use crate::store::StoreError;
 
+/// A file in a spool of which something could not be read, and is in no record.
+const UNREAD: &str = "unread";
+
+/// Whether there is something in the spool of a run that is over which is in no record.
+pub(super) fn has_unread(spool: &Path) -> bool {
+    spool.join(UNREAD).exists()
+}
+
 /// Stores what a lane wrote down as evidence, each file up to [`FILE_MIB`].
 pub(super) fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
     attached_but(blobs, spool, &|unread| Err(unread))
 }
 
-/// Stores what a lane wrote down, without what cannot be read, which would keep the run open for ever.
+/// Stores what a lane wrote down, without what cannot be read, which would keep the run open for ever. The spool stays then, for
+/// whoever can read it.
 pub(super) fn attached_as_can_be(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
     attached_but(blobs, spool, &|unread| {
-        tracing::warn!("a record goes without what its lane wrote down: {}", Said::of(&unread));
+        tracing::warn!(
+            "a record goes without what its lane wrote down: {}; {} stays for whoever can read it",
+            Said::of(&unread),
+            spool.display()
+        );
+        if let Err(error) = File::create(spool.join(UNREAD)) {
+            tracing::warn!("{} may not stay: {error}; copy it now", spool.display());
+        }
         Ok(())
     })
 }

@@ -18,7 +18,7 @@ use crate::record::{
 use crate::said::Saying;
 use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stored};
 
-use super::evidence::attached_as_can_be;
+use super::evidence::{attached_as_can_be, has_unread};
 use super::{RunError, Saved, Stage, Watch, save};
 
 /// The claim of the job that a run belongs to, in the run's spool: the row of an open run does not have it.
@@ -121,9 +121,10 @@ fn stuck(store: &Store) -> Result<Vec<RunHead>, RunError> {
         .collect()
 }
 
-/// Whether the spool of a run that is over is still needed: by the next start, which has to know of the lane's process.
+/// Whether the spool of a run that is over is still needed: by the next start, which has to know of the lane's process, or by
+/// somebody who can read what this station could not.
 pub(super) fn is_needed(spool: &Path) -> bool {
-    left_behind(spool).is_some()
+    left_behind(spool).is_some() || has_unread(spool)
 }
 
 /// Settles a run whose result could not be saved, once the store works again: as ERROR, cause crash, or as the store has it if
