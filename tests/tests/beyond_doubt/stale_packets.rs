@@ -358,7 +358,8 @@ fn after_stale(reply: &'static Reply<'static>) -> Report {
 #[test]
 fn what_is_of_an_earlier_session_is_no_answer_to_a_greeting() {
     const BUSY: Refusal = Refusal { code: RefusalCode::Busy, kind: Kind::Configure.code(), detail: 0 };
-    for reply in [&Reply::Reset, &Reply::Refusal(BUSY)] {
+    const ACK: Refusal = Refusal { code: RefusalCode::Session, kind: Kind::RowAck.code(), detail: 0 };
+    for reply in [&Reply::Reset, &Reply::Refusal(BUSY), &Reply::Refusal(ACK)] {
         let report = after_stale(reply);
         assert_eq!(report.verdict(), Verdict::Pass, "{reply:?}: {}", report.headline());
     }

@@ -58,6 +58,15 @@ pub(super) struct Session {
     asked: LastRequests,
 }
 
+impl Session {
+    /// Takes any packet, whatever session it names. In front of the reply to HELLO comes what an earlier board may have said.
+    fn any_packet(&mut self, packet: &Packet<'_>) {
+        if self.number != 0 {
+            self.conduct.any_packet(packet);
+        }
+    }
+}
+
 pub(super) struct Conversation {
     link: Box<dyn Link>,
     encoder: Encoder,
@@ -287,7 +296,7 @@ impl Conversation {
         let mut strays = Vec::new();
         let mut bytes = self.incoming.as_slice();
         while let Some(packet) = self.decoder.next(&mut bytes) {
-            packet.iter().for_each(|packet| self.session.conduct.any_packet(packet));
+            packet.iter().for_each(|packet| self.session.any_packet(packet));
             match packet {
                 Ok(packet) if packet.header.session == self.session.number || self.session.number == 0 => {
                     self.heard_at = now;
