@@ -14,13 +14,14 @@ impl Rules<'_, '_> {
     /// packet of that session, in which no row has entered.
     pub(super) fn same_board_greets(&mut self) -> Result<(), End> {
         let (welcome, Header { session, window, .. }) = (self.run.board.welcome, self.run.board.answered());
-        // Another board may have other banks.
         self.same_board(&welcome)?;
         let banks = self.capabilities.row_banks_in.into();
         if session != welcome.session {
             return Err(another_session(welcome.session, session));
         }
         if window != banks {
+            // Another build of the same commit may have other banks.
+            self.has_tables()?;
             let [right, found] = [banks, window].map(|rows| Answer::Credit { rows });
             return Err(broken(Rule::NewSession, Kind::Hello, right, found));
         }
@@ -38,10 +39,16 @@ impl Rules<'_, '_> {
         if right == found {
             return Ok(());
         }
+        self.has_tables()?;
+        Err(broken(Rule::NewSession, Kind::Hello, right, found))
+    }
+
+    /// A board without tables may be another one than the board that was given them.
+    fn has_tables(&mut self) -> Result<(), End> {
         if self.status()?.generation == 0 {
             return Err(End::error(CheckName::Identity, Cause::Refused, Finding::BoardExchanged {}));
         }
-        Err(broken(Rule::NewSession, Kind::Hello, right, found))
+        Ok(())
     }
 
     /// What is `said` to a greeting must be the refusal that is `right`, and that in no session.
