@@ -167,17 +167,25 @@ fn a_refused_row_leaves_the_window_where_it_is() {
     }
 }
 
-/// In its own session.
+/// In its own session, by an empty reply and by a refusal without the flag that nobody looks at.
 #[test]
 fn an_acknowledgement_is_not_answered() {
-    let mut answers = Vec::new();
-    let report = altering(move |toward, packet| {
-        if toward == Toward::Board && packet.is(Kind::RowAck) {
-            let header = Header { reply: true, ..packet.header };
-            answers.push(Passing { header, payload: Vec::new() });
-        }
-        if toward == Toward::Board { vec![packet] } else { answers.drain(..).chain([packet]).collect() }
-    });
-    let is_told = matches!(report.finding, Finding::RuleBroken { rule: Rule::Unanswered, .. });
-    assert!(report.verdict() == Verdict::Fail && is_told, "{}", report.headline());
+    let answers_of: [fn(&Passing) -> Passing; 2] = [
+        |ack| Passing { header: Header { reply: true, ..ack.header }, payload: Vec::new() },
+        |ack| {
+            let (code, kind) = (RefusalCode::Kind, Kind::RowAck.code());
+            ack.saying(&Reply::Refusal(Refusal { code, kind, detail: 0 }))
+        },
+    ];
+    for answer in answers_of {
+        let mut answers = Vec::new();
+        let report = altering(move |toward, packet| {
+            if toward == Toward::Board && packet.is(Kind::RowAck) {
+                answers.push(answer(&packet));
+            }
+            if toward == Toward::Board { vec![packet] } else { answers.drain(..).chain([packet]).collect() }
+        });
+        let is_told = matches!(report.finding, Finding::RuleBroken { rule: Rule::Unanswered, .. });
+        assert!(report.verdict() == Verdict::Fail && is_told, "{}", report.headline());
+    }
 }

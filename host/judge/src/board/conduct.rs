@@ -1,4 +1,4 @@
-//! What a board did with rows that no link can have caused: every packet has a CRC, a session and a number of its own.
+//! What a board did that no link can have caused: every packet has a CRC, a session and a number of its own.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -165,15 +165,15 @@ impl Conduct {
         self.misconduct.get_or_insert(misconduct);
     }
 
-    /// Takes any packet, whatever session it names: no board may answer anybody's acknowledgement. The flag tells an answer from the
-    /// host's own packet that a line echoes.
+    /// Takes any packet, whatever session it names: no board may answer anybody's acknowledgement. Only the flag tells an empty answer
+    /// from the host's own packet that a line echoes.
     pub(super) fn any_packet(&mut self, packet: &Packet<'_>) {
         let refusal = match Reply::read(packet) {
-            _ if !packet.header.reply => return,
             Ok(Reply::Refusal(refusal)) if refusal.kind == Kind::RowAck.code() => Some(refusal),
             _ => None,
         };
-        if refusal.is_some() || packet.header.kind == Kind::RowAck.code() {
+        let is_reply = packet.header.reply && packet.header.kind == Kind::RowAck.code();
+        if refusal.is_some() || is_reply {
             self.note(Misconduct::AckAnswered { refusal });
         }
     }

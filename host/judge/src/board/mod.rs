@@ -159,7 +159,7 @@ impl Board {
         &self.capabilities
     }
 
-    /// What the board did with rows in this session that no link can have caused.
+    /// What the board did in this session that no link can have caused.
     #[must_use]
     pub(crate) fn misconduct(&self) -> Option<Misconduct> {
         self.conversation.session.conduct.misconduct()

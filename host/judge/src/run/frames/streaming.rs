@@ -107,13 +107,12 @@ impl Run<'_> {
         }
     }
 
-    /// What `tried` came to, unless the board did with rows what no link can cause: that counts although the link broke after
-    /// it.
+    /// What `tried` came to, unless the board did what no link can cause: that counts although the link broke after it.
     pub(crate) fn unless_misconduct<T>(&self, check: CheckName, tried: Result<T, End>) -> Result<T, End> {
         self.misconduct(check).map_or(tried, Err)
     }
 
-    /// What the board did with rows that no link can cause, if anything.
+    /// What the board did that no link can cause, if anything.
     fn misconduct(&self, check: CheckName) -> Option<End> {
         let misconduct = self.board.misconduct()?;
         let rules = check == CheckName::Rules;
