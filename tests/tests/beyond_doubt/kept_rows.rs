@@ -50,10 +50,18 @@ fn any_number_of_banks_may_be_filled() {
 }
 
 /// The report on a board that never hears the packets that are `swallowed`, but still counts them.
-fn deaf_to(mut swallowed: impl FnMut(Toward, &Passing) -> bool + Send + 'static) -> Report {
+fn deaf_to(swallowed: impl FnMut(Toward, &mut Passing) -> bool + Send + 'static) -> Report {
+    deaf(&Options::default(), swallowed)
+}
+
+/// The same for a board of the build `options`.
+fn deaf(
+    options: &Options,
+    mut swallowed: impl FnMut(Toward, &mut Passing) -> bool + Send + 'static,
+) -> Report {
     let mut missed = 0;
-    let altered = move |toward, packet: Passing| {
-        if swallowed(toward, &packet) {
+    let altered = move |toward, mut packet: Passing| {
+        if swallowed(toward, &mut packet) {
             missed += 1;
             return Vec::new();
         }
@@ -65,7 +73,7 @@ fn deaf_to(mut swallowed: impl FnMut(Toward, &Passing) -> bool + Send + 'static)
             _ => vec![packet],
         }
     };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+    judge_by_plan(&plan(), Altered::new(options, altered).candidate())
 }
 
 #[test]
@@ -90,6 +98,31 @@ fn a_board_that_does_not_send_a_row_again_fails() {
         packet.is(Kind::RowIn) && came.contains(&number) && samples.iter().all(|&byte| byte == 0)
     });
     assert_eq!(broken(&report).0, Rule::Banks);
+}
+
+/// The row that fills the last bank is not heard until it is asked for again, which the host does by sending black samples. No
+/// frame of more than one row fills this many banks, so no other row waits for it.
+#[test]
+fn a_row_that_comes_late_and_in_another_place_fails() {
+    const BANKS: u32 = 23;
+    let mut late = None;
+    let options = Options { row_banks_out: BANKS as u8, ..Options::default() };
+    let report = deaf(&options, move |toward, packet| {
+        let Some((row, samples)) = packet.payload.split_at_checked(PLACE) else { return false };
+        let number = u32::from_le_bytes(row[..4].try_into().unwrap());
+        if toward == Toward::Host {
+            if packet.is(Kind::RowOut) && late == Some(number) {
+                packet.payload[4] ^= 1;
+            }
+            return false;
+        }
+        let is_last = packet.is(Kind::RowIn) && number.wrapping_sub(packet.header.window) == BANKS - 1;
+        let is_swallowed = is_last && samples.iter().any(|&byte| byte != 0);
+        late = late.or(is_swallowed.then_some(number));
+        is_swallowed
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::Rules), "{}", report.headline());
+    assert!(matches!(report.finding, Finding::RowMisplaced(_)), "{}", report.headline());
 }
 
 #[test]

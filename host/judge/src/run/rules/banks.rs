@@ -132,8 +132,11 @@ impl Rules<'_, '_> {
     /// was sent.
     fn is_silent_when_asked_again(&mut self, kept: &FilledBanks, place: &RowPlace) -> Result<bool, End> {
         let black = kept.black();
-        let came = self.run.board.again((place, &black), None, 0);
-        Ok(matches!(came, Err(BoardError::RowMissing { .. })) && self.says_it_sent_no_more(kept)?)
+        match self.run.board.again((place, &black), None, 0) {
+            Ok(_) => Ok(false),
+            Err(BoardError::RowMissing { .. }) => self.says_it_sent_no_more(kept),
+            Err(error) => Err(End::board(CheckName::Rules, &error)),
+        }
     }
 
     /// Whether the board had everything that was sent to it, and itself says that it sent only the rows that came.
