@@ -1,14 +1,15 @@
 //! Boards that give another window than they keep to, and links that leave a sound board with a smaller window than the host
 //! knows.
 
-use halfrow::result::{Answer, Finding, Report, Rule};
+use halfrow::result::{Answer, Counter, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_protocol::message::{Refusal, RefusalCode};
+use halfrow_protocol::message::{Refusal, RefusalCode, Status};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward, judge, judge_each};
 use halfrow_tests::system::System;
 
+use super::rule_by_rule::altering;
 use super::rules::{broken, carried_out, refusal, said_by};
 
 /// Where a RESET names the row that the board then waits for (WIRE.md, 03).
@@ -69,6 +70,42 @@ fn a_board_that_gives_less_credit_than_it_has_banks_fails() {
         });
         assert_eq!(credit(&report), BANKS.saturating_sub(less));
     }
+}
+
+/// The link loses the first of these acknowledgements.
+#[test]
+fn a_board_that_takes_rows_as_acknowledged_that_it_never_sent_fails_over_a_link_that_loses_packets() {
+    let (mut sent, mut beyond, mut is_lost) = (0, None, false);
+    let report = altering(move |toward, packet| {
+        if let (true, Some(next_row)) = (packet.is(Kind::Reset), packet.payload.get(NEXT_ROW)) {
+            (sent, beyond) = (u32::from_le_bytes(next_row.try_into().unwrap()), None);
+        }
+        if toward == Toward::Board && packet.is(Kind::RowAck) && packet.header.window == sent + BANKS {
+            beyond = is_lost.then_some(packet.header.window);
+            is_lost = true;
+            return Vec::from_iter(beyond.map(|_| packet));
+        }
+        match (packet.reply(), beyond) {
+            (Some(Reply::Status(status)), Some(next_row_out)) if toward == Toward::Host => {
+                vec![packet.saying(&Reply::Status(Status { next_row_out, ..status }))]
+            }
+            (Some(Reply::RowOut(row)), _) if toward == Toward::Host => {
+                sent = sent.max(row.place.row_sequence + 1);
+                vec![packet]
+            }
+            _ => vec![packet],
+        }
+    });
+    let counter = match report.finding {
+        Finding::CounterWrong { counter, rule: Some(Rule::Banks), .. } => Some(counter),
+        _ => None,
+    };
+    assert_eq!(
+        (report.verdict(), counter),
+        (Verdict::Fail, Some(Counter::NextRowOut)),
+        "{}",
+        report.headline()
+    );
 }
 
 fn is_without_credit(refusal: &Refusal) -> bool {
