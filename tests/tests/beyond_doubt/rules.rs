@@ -88,6 +88,14 @@ fn builds_of_every_kind_keep_the_rules() {
     }
 }
 
+/// There row factors have no room for a right one in front of a wrong one, and a grid has.
+#[test]
+fn entries_of_a_grid_that_are_written_in_front_of_a_wrong_one_fail_on_a_board_of_one_row() {
+    let low = Plan { selection: plan().selection, ..System::TINIEST.plan() };
+    let report = judge_by_plan(&low, open("mock,max-height=1,fault=unkept-rule"));
+    assert_eq!(broken(&report).0, Rule::Entry);
+}
+
 /// Pauses of a burst are no fault, and only one of a record's flags has a meaning.
 #[test]
 fn what_a_record_may_say_is_not_looked_at() {

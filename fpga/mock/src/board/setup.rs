@@ -58,7 +58,7 @@ impl Board {
         let first = usize::from(first);
         let written = match table {
             Table::RowFactors => self.write_factors(first, &entries.row_factors().collect::<Vec<_>>()),
-            Table::Grid => self.tables.write_grid(first, &entries.row_factors().collect::<Vec<_>>()),
+            Table::Grid => self.write_grid(first, &entries.row_factors().collect::<Vec<_>>()),
             Table::Kernel => {
                 self.tables.write_nodes(first, &entries.nodes().map(Node::from).collect::<Vec<_>>())
             }
@@ -79,6 +79,16 @@ impl Board {
             && self.has(Conduct::PartialWrite)
         {
             self.tables.write_factors(first, &factors[..row - first])?;
+        }
+        written
+    }
+
+    fn write_grid(&mut self, first: usize, values: &[u32]) -> Result<(), TableError> {
+        let written = self.tables.write_grid(first, values);
+        if let Err(TableError::GridEntry { entry, .. }) = written
+            && self.has(Conduct::PartialWrite)
+        {
+            self.tables.write_grid(first, &values[..entry - first])?;
         }
         written
     }

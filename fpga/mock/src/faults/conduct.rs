@@ -19,7 +19,7 @@ pub enum Conduct {
     DamagedAck,
     /// It says of every row that is sent again that it was never sent before.
     StuckRepeats,
-    /// It writes the factors in front of one that it refuses.
+    /// It writes the factors or grid entries in front of one that it refuses.
     PartialWrite,
     /// It names a wrong entry by its place in the packet instead of that in the table.
     PlaceInPacket,

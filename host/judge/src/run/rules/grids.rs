@@ -21,13 +21,15 @@ impl Rules<'_, '_> {
 
     /// Grid entries with a bit too many, after a right one and before it.
     pub(super) fn grid_entries(&mut self) -> Result<(), End> {
+        // Of a board of one row only entry 0 is looked at afterwards.
+        let first = PLACE.min(self.capabilities.max_height - 1);
         let most = *TableSet::GRID_RANGE.end();
         for wrong in (0..u32::BITS).map(|bit| 1_u32 << bit).filter(|&wrong| wrong > most) {
             for (place, entries) in [(1, [most, wrong]), (0, [wrong, most])] {
                 let bytes = entries.map(u32::to_le_bytes).concat();
-                let span = Span { table: Table::Grid, first: PLACE, count: 2, ..FIRST_FACTOR };
+                let span = Span { table: Table::Grid, first, count: 2, ..FIRST_FACTOR };
                 let request = Request::TableWrite(Entries { span, bytes: &bytes });
-                self.refused(Rule::Entry, &request, RefusalCode::Range, PLACE + place)?;
+                self.refused(Rule::Entry, &request, RefusalCode::Range, first + place)?;
             }
         }
         Ok(())
