@@ -348,3 +348,23 @@ fn a_station_that_is_frozen_while_another_host_asks_for_the_board_makes_no_board
     let report = judge_by_plan(&plan(), Candidate::new("frozen", BoardKind::Mock, link));
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
+
+/// The link loses the first copy of each greeting that is repeated.
+#[test]
+fn a_repeated_greeting_must_be_answered_in_its_session_over_a_link_that_loses_packets_too() {
+    let (mut own, mut copies) = (None, 0);
+    let altered = move |toward, mut packet: Passing| {
+        if toward == Toward::Host && packet.is(Kind::Hello) {
+            let nonce = packet.payload[..4].to_vec();
+            let is_first = own.is_none();
+            if *own.get_or_insert_with(|| nonce.clone()) == nonce && !is_first {
+                copies += 1;
+                packet.header.session ^= 2;
+                return Vec::from_iter((copies % 2 == 0).then_some(packet));
+            }
+        }
+        vec![packet]
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    assert_eq!(broken(&report).0, Rule::NewSession, "{}", report.headline());
+}

@@ -58,7 +58,9 @@ impl Board {
         // An answer in another session must be heard too.
         let welcome = conversation.under_session(0, |conversation| greet(conversation, &options))?;
         if welcome.session == conversation.session.number {
+            let answered = conversation.answered;
             conversation.count_after(before.retries);
+            conversation.answered = answered;
         } else {
             conversation.leave_session();
             conversation.session.number = welcome.session;
