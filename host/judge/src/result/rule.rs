@@ -18,7 +18,7 @@ pub enum Rule {
     Span,
     /// A table entry out of range is refused, and nothing of its packet is written.
     Entry,
-    /// An entry is written where it belongs and read from there.
+    /// An entry is written where it belongs, whichever port the request names, and read from there.
     Address,
     /// A packet with a flipped bit, of another version or of another length than it names has no effect.
     Damage,

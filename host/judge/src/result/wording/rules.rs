@@ -154,7 +154,7 @@ pub(super) fn meaning(rule: Rule) -> &'static str {
         Rule::Configuration => "a configuration must be set as it is, or refused without effect",
         Rule::Span => "a span outside a table must be refused",
         Rule::Entry => "a table entry out of range must be refused, and nothing of its packet written",
-        Rule::Address => "an entry must be written where it belongs and read from there",
+        Rule::Address => "an entry must be written where it belongs, to every port, and read from there",
         Rule::Damage => "a damaged packet must have no effect",
         Rule::Once => "each request must have one answer, and most had two",
         Rule::Unanswered => "an acknowledgement of rows must never be answered",
