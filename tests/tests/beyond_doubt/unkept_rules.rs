@@ -154,7 +154,7 @@ fn a_refusal_of_a_greeting_belongs_to_no_session() {
             }
             Some(packet)
         });
-        assert_eq!(broken(&report).0, Rule::NewSession, "{code}: {}", report.headline());
+        assert_eq!(broken(&report).0, Rule::RefusalSession, "{code}: {}", report.headline());
     }
 }
 

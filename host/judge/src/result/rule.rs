@@ -32,6 +32,8 @@ pub enum Rule {
     Held,
     /// HELLO opens the next session, once; only tables and configuration are left of the one before.
     NewSession,
+    /// A refusal carries the session of its request.
+    RefusalSession,
     /// RESET closes the session with level 1 alone, and drops tables with level 2 alone.
     Closed,
     /// A commit with another CRC than the tables read back with is refused.

@@ -161,6 +161,7 @@ pub(super) fn meaning(rule: Rule) -> &'static str {
         Rule::Session => "a packet of another session must have no effect",
         Rule::Held => "a board must be held for 10 s after its holder's last packet, but can be taken over",
         Rule::NewSession => "a greeting must open the next session, which keeps only tables and settings",
+        Rule::RefusalSession => "a refusal must carry the session of its request, which is 0 for a greeting",
         Rule::Closed => "RESET must close a session at level 1 only, and drop tables at level 2 only",
         Rule::CommitCrc => "a commit whose CRC does not match the tables must be refused",
         Rule::Generation => "a commit of active or pending tables must be answered, generation 0 refused",

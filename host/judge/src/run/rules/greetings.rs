@@ -17,7 +17,7 @@ impl Rules<'_, '_> {
         self.same_board(&welcome)?;
         let banks = self.capabilities.row_banks_in.into();
         if session != welcome.session {
-            return Err(another_session(welcome.session, session));
+            return Err(another_session(Rule::NewSession, welcome.session, session));
         }
         if window != banks {
             // Another build of the same commit may have other banks.
@@ -60,11 +60,11 @@ impl Rules<'_, '_> {
     ) -> Result<(), End> {
         let Header { session, .. } = self.run.board.answered();
         self.judge(rule, Kind::Hello, said, &Response::Refused(right))?;
-        if session == 0 { Ok(()) } else { Err(another_session(0, session)) }
+        if session == 0 { Ok(()) } else { Err(another_session(Rule::RefusalSession, 0, session)) }
     }
 }
 
-pub(super) fn another_session(right: u8, found: u8) -> End {
+pub(super) fn another_session(rule: Rule, right: u8, found: u8) -> End {
     let [right, found] = [right, found].map(|number| Answer::Session { number });
-    broken(Rule::NewSession, Kind::Hello, right, found)
+    broken(rule, Kind::Hello, right, found)
 }

@@ -164,11 +164,11 @@ impl Rules<'_, '_> {
             if again.session != own {
                 // The window is not known until the board has answered in the new session.
                 rules.status()?;
-                return Err(another_session(own, again.session));
+                return Err(another_session(Rule::NewSession, own, again.session));
             }
             let named = rules.run.board.answered().session;
             if named != own {
-                return Err(another_session(own, named));
+                return Err(another_session(Rule::NewSession, own, named));
             }
             rules.same_board(&again)?;
             rules.right += 1;
@@ -187,7 +187,7 @@ impl Rules<'_, '_> {
                 self.right += 1;
                 return Ok(());
             }
-            wrong = Some(another_session(right, found));
+            wrong = Some(another_session(Rule::NewSession, right, found));
         }
         wrong.map_or(Ok(()), Err)
     }
