@@ -14,10 +14,6 @@ use crate::{BoardKind, Holder, SerialBoard, Target, UsbDevice};
 
 pub use answer::Answer;
 
-/// What to do about a device that is there but not given to this program.
-const HAVE_IT: &str =
-    "let the container or service that this program runs in have it, as docs/install.md says";
-
 /// Everything on this computer that could be a board, in the order of [`KINDS`].
 #[must_use]
 pub fn find() -> Vec<Found> {

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use nix::errno::Errno;
 use nix::unistd::{AccessFlags, access};
 
-use super::{Access, Found, HAVE_IT};
-use crate::sysfs::is_withheld;
+use super::{Access, Found};
+use crate::sysfs::{HAVE_IT, is_withheld};
 use crate::target::BoardKind;
 use crate::{UsbDevice, holders, how_to_get_access, usb_device};
 

@@ -1,6 +1,7 @@
 //! FTDI's chips on USB, whether or not the system has made serial ports of them.
 
-use super::{Access, Found, HAVE_IT};
+use super::{Access, Found};
+use crate::sysfs::HAVE_IT;
 use crate::target::BoardKind;
 use crate::{UsbBoard, how_to_get_access, usb_boards};
 

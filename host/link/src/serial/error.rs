@@ -6,6 +6,7 @@ use super::Holder;
 use super::holder::by;
 use crate::Class;
 use crate::ftdi::list;
+use crate::sysfs::HAVE_IT;
 
 /// A serial port that cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -30,10 +31,7 @@ pub enum SerialError {
         remedy: String,
     },
     /// The serial port is there, but this program is not given it, as in a container to which it was not passed on.
-    #[error(
-        "{0} is on this computer, but this program is not given it; let the container or service that this program runs in \
-         have it, as docs/install.md says"
-    )]
+    #[error("{} is on this computer, but this program is not given it; {}", .0.display(), HAVE_IT)]
     NotGiven(PathBuf),
     /// Another program is using the serial port.
     #[error("{path} is in use by {}", by(.holders))]

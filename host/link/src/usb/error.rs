@@ -5,6 +5,7 @@ use super::transport::UsbFailure;
 use crate::Class;
 use crate::ftdi::list;
 use crate::serial::{Holder, by};
+use crate::sysfs::HAVE_IT;
 
 /// Why a board cannot be opened over USB.
 #[derive(Debug, thiserror::Error)]
@@ -58,10 +59,7 @@ pub enum UsbError {
         name: String,
     },
     /// The USB device is plugged in, but this program is not given it, as in a container to which it was not passed on.
-    #[error(
-        "the USB device {name} is plugged in, but this program is not given it; let the container or service that this program \
-         runs in have it, as docs/install.md says"
-    )]
+    #[error("the USB device {name} is plugged in, but this program is not given it; {}", HAVE_IT)]
     NotGiven {
         /// The chip's name.
         name: String,
