@@ -11,7 +11,7 @@ use crate::core::{GridShape, Node};
 use crate::depth::Depth;
 use crate::faults::Conduct;
 use crate::settings::{Settings, SettingsError};
-use crate::tables::{self, Port, TableError};
+use crate::tables::{self, Port, TableError, Tables};
 
 impl Board {
     pub(super) fn configure(&mut self, wanted: &Configuration) -> Result<(), Refused> {
@@ -56,9 +56,10 @@ impl Board {
             return Err((RefusalCode::Busy, 0));
         }
         let first = usize::from(first);
+        let factors = || entries.row_factors().collect::<Vec<_>>();
         let written = match table {
-            Table::RowFactors => self.write_factors(first, &entries.row_factors().collect::<Vec<_>>()),
-            Table::Grid => self.write_grid(first, &entries.row_factors().collect::<Vec<_>>()),
+            Table::RowFactors => self.write(Tables::write_factors, first, &factors()),
+            Table::Grid => self.write(Tables::write_grid, first, &factors()),
             Table::Kernel => {
                 self.tables.write_nodes(first, &entries.nodes().map(Node::from).collect::<Vec<_>>())
             }
@@ -73,22 +74,19 @@ impl Board {
         })
     }
 
-    fn write_factors(&mut self, first: usize, factors: &[u32]) -> Result<(), TableError> {
-        let written = self.tables.write_factors(first, factors);
-        if let Err(TableError::Factor { row, .. }) = written
+    /// Writes row factors or grid entries by `write`.
+    fn write(
+        &mut self,
+        write: fn(&mut Tables, usize, &[u32]) -> Result<(), TableError>,
+        first: usize,
+        values: &[u32],
+    ) -> Result<(), TableError> {
+        let written = write(&mut self.tables, first, values);
+        if let Err(TableError::Factor { row: wrong, .. } | TableError::GridEntry { entry: wrong, .. }) =
+            written
             && self.has(Conduct::PartialWrite)
         {
-            self.tables.write_factors(first, &factors[..row - first])?;
-        }
-        written
-    }
-
-    fn write_grid(&mut self, first: usize, values: &[u32]) -> Result<(), TableError> {
-        let written = self.tables.write_grid(first, values);
-        if let Err(TableError::GridEntry { entry, .. }) = written
-            && self.has(Conduct::PartialWrite)
-        {
-            self.tables.write_grid(first, &values[..entry - first])?;
+            write(&mut self.tables, first, &values[..wrong - first])?;
         }
         written
     }
