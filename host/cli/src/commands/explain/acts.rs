@@ -173,6 +173,10 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "check that the board is plugged in and powered, and see `halfrow boards` for the ports that are there",
     ),
     (
+        "serial-port-not-given",
+        "let the container or service that halfrow runs in have the port, as docs/install.md says",
+    ),
+    (
         "serial-port-not-permitted",
         "do what the message says: join a group, install scripts/70-halfrow.rules as docs/boards.md says, or ask root for access",
     ),
@@ -237,6 +241,10 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     (
         "usb-in-use",
         "end the program that holds it, which the message names if this user may know, or wait until it is done",
+    ),
+    (
+        "usb-not-given",
+        "let the container or service that halfrow runs in have the device, as docs/install.md says",
     ),
     (
         "usb-other-devices-only",
