@@ -10,6 +10,10 @@ const MEND_TABLES: &str = "first repair the records that `check` names; if this 
 /// What to do where the cause says it.
 const CAUSE: &str = "do what its cause says, which has a code of its own";
 
+/// What to do about a port or chip that another program has.
+const HELD: &str =
+    "end the program that holds it, which the message names if this user may know, or wait until it is done";
+
 /// Each code with its act, in the order of the codes.
 pub(super) const ACTS: &[(&str, &str)] = &[
     ("audit-contradicts", MEND_TABLES),
@@ -164,18 +168,12 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "give it more with --timeout, or use a faster link; if nothing came at the end, check the board's power and the cable",
     ),
     ("secret-file-open", "run the `chmod` that the message names"),
-    (
-        "serial-port-in-use",
-        "end the program that holds it, which the message names if this user may know, or wait until it is done",
-    ),
+    ("serial-port-in-use", HELD),
     (
         "serial-port-missing",
         "check that the board is plugged in and powered, and see `halfrow boards` for the ports that are there",
     ),
-    (
-        "serial-port-not-given",
-        "let the container or service that halfrow runs in have the port, as docs/install.md says",
-    ),
+    ("serial-port-not-given", "let halfrow's container or service have the port, as docs/install.md says"),
     (
         "serial-port-not-permitted",
         "do what the message says: join a group, install scripts/70-halfrow.rules as docs/boards.md says, or ask root for access",
@@ -238,14 +236,8 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "load a bitstream for the channel as it is and say its mode, or set the channel with FT_PROG or ftdi_eeprom",
     ),
     ("usb-device-failed", "unplug the board, plug it in, and run again"),
-    (
-        "usb-in-use",
-        "end the program that holds it, which the message names if this user may know, or wait until it is done",
-    ),
-    (
-        "usb-not-given",
-        "let the container or service that halfrow runs in have the device, as docs/install.md says",
-    ),
+    ("usb-in-use", HELD),
+    ("usb-not-given", "let halfrow's container or service have the device, as docs/install.md says"),
     (
         "usb-other-devices-only",
         "choose the board's chip by one of the targets that the message names, if it is one of them",
