@@ -60,7 +60,8 @@ def key(paths, words=""):
 def judging_key(count, runner):
     """A hash of everything that decides what a fault is and which check finds it."""
     own = [HERE / "coverage.py", HERE / "coverage.ini", HERE / "mutants.py", HERE / "rtl.py", table.PARAMETERS, pathlib.Path(runner)]
-    return key([*own, *sorted(SHIM.iterdir()), *sorted(rtl.RTL.glob("**/*.v*"))], f"{count} {SEED} {SIZES}")
+    tools = [mutants.version(tool) for tool in ("yosys", "verilator")]
+    return key([*own, *sorted(SHIM.iterdir()), *sorted(rtl.RTL.glob("**/*.v*"))], f"{count} {SEED} {SIZES} {tools}")
 
 
 def board(work):

@@ -50,6 +50,12 @@ def run(command, log):
             sys.exit(f"{pathlib.Path(sys.argv[0]).stem}: {command[0]} failed, see {log}")
 
 
+def version(tool):
+    """What a tool of the faults, yosys or verilator, says of itself."""
+    said = subprocess.run([tool, "--version"], check=True, capture_output=True, text=True).stdout
+    return " ".join(said.split()[:2])
+
+
 def more(count):
     """How many faults to draw so that `count` remain without those of clocks."""
     return count + count // 4 + 10

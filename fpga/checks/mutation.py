@@ -25,7 +25,8 @@ SURVIVES = "survives"
 
 def key(count):
     """A hash of everything that decides what a fault is and which check finds it."""
-    told = hashlib.sha256(f"{count} {SEED}".encode())
+    tools = [mutants.version(tool) for tool in ("yosys", "verilator")]
+    told = hashlib.sha256(f"{count} {SEED} {tools}".encode())
     files = [*rtl.RTL.glob("**/*.v*"), *mutants.BENCH.iterdir(), *HERE.glob("mut*"), *HERE.glob("*_bench.cpp"), *HERE.glob("*.hpp"),
              HERE / "rtl.py"]
     for path in sorted(path for path in files if path.is_file() and path.suffix != ".md"):

@@ -3,11 +3,15 @@ import collections
 import json
 import pathlib
 import re
+import sys
 import zlib
 
+import mutants
 import rtl
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "fpga" / "boards"))
+import commit  # noqa: E402
 # The parameters of every simulated board.
 PARAMETERS = ROOT / "fpga" / "sim" / "parameters.txt"
 PAGE = ROOT / "fpga" / "checks" / "coverage.md"
@@ -15,8 +19,9 @@ FAULTS = ROOT / "host" / "judge" / "src" / "coverage" / "faults.json"
 CLASSES = ["samples", "signature", "latency", "counters", "read-back", "rules", "error", "equivalent", "left"]
 HEAD = """# What a run finds
 
-Made by `scripts/hardware coverage`, as `coverage.py` and `proofs.py` say; nobody writes it by hand. {count:,} single faults that yosys drew with
-seed {seed} in the board's Verilog of build `{build}` (the CRC-32 of it and its parameters), each judged by what `halfrow verify --width {width} --height {height} --radius {radius}` does.
+Made by `scripts/hardware coverage`, as `coverage.py` and `proofs.py` say; nobody writes it by hand. {count:,} single faults that {yosys} drew with
+seed {seed} in the board's Verilog of build `{build}` (the CRC-32 of it and its parameters), each judged by what `halfrow verify --width {width} --height {height} --radius {radius}` of
+commit {judge} does.
 
 Found: {found:,} of the {open:,} that are not proven to make no difference, {share:.1f} %. {checked} drawn ones of the {equivalent} proofs were
 checked by simulation at another size. How a fault is found says what failed first; an error is never a pass.
@@ -39,6 +44,13 @@ def build():
     for path in [*verilog, PARAMETERS]:
         check = zlib.crc32(path.read_bytes(), check)
     return f"{check:08x}"
+
+
+def judge():
+    """The commit whose `verify` judges."""
+    own = (f":!{path.relative_to(ROOT)}" for path in (PAGE, FAULTS))
+    changed = commit.git("status", "--porcelain", "--", "fpga", "host", *own) != ""
+    return f"`{commit.start()}`" + (" with changes that it does not have" if changed else "")
 
 
 def line(block, number):
@@ -96,7 +108,7 @@ def write(blocks, checked, sections, seed, sizes):
     # Rounded down, so that a run never claims more than was measured.
     numbers["share"] = 1000 * numbers["found"] // numbers["open"] / 10
     width, height, radius = sizes
-    page = HEAD.format(seed=seed, build=build(), width=width, height=height, radius=radius, checked=checked, **numbers)
+    page = HEAD.format(seed=seed, yosys=mutants.version("yosys"), judge=judge(), build=build(), width=width, height=height, radius=radius, checked=checked, **numbers)
     page += "".join(f"| {of} | {counts.total():,} | " + " | ".join(f"{counts[one]:,}" for one in CLASSES) + " |\n" for of, counts in rows)
     page += LEFT + "\n".join(filter(None, (left(block, sections[block.name.replace("_", " ")]) for block in blocks)))
     PAGE.write_text(page)
