@@ -90,7 +90,10 @@ def main():
         sys.exit("parameters: parameters.ini and fpga/rtl do not agree on\n  " + "\n  ".join(missing))
     words = sys.argv[1:]
     tools = TOOLS if "long" in words else TOOLS[:1]
-    chosen = [word for word in words if word != "long"] or [section for section in cases.sections() if section != "inside"]
+    known = [section for section in cases.sections() if section != "inside"]
+    chosen = [word for word in words if word != "long"] or known
+    if unknown := set(chosen) - set(known):
+        sys.exit(f"parameters: there is no {', '.join(sorted(unknown))} in parameters.ini, but {', '.join(known)}")
     illegal = [(module, name, assignments(name, told)) for module in chosen for name, line in cases[module].items()
                if name not in OTHERS for told in line.split(";")]
     legal = [(module, None, assignments(None, told)) for module in chosen for told in cases[module]["legal"].split(";")]

@@ -11,9 +11,9 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
-import venv
 
 BOARD = pathlib.Path(__file__).resolve().parent
 ROOT = BOARD.parents[2]
@@ -43,10 +43,13 @@ def tools():
     kept = TOOLS / "requirements.txt"
     if kept.is_file() and kept.read_text() == wanted:
         return
-    venv.create(TOOLS, clear=True, with_pip=True)
+    shutil.rmtree(TOOLS, ignore_errors=True)
+    # What callers read of this program's output is no message.
+    if subprocess.run([ROOT / "scripts" / "venv", TOOLS, sys.executable], stdout=sys.stderr).returncode:
+        raise Stopped("no Python environment could be made for the tools of requirements.txt, as said above")
     pip = [TOOLS / "bin" / "python", "-m", "pip", "install", "--quiet", "--require-hashes", "--only-binary", ":all:"]
     if subprocess.run([*pip, "-r", BOARD / "requirements.txt"]).returncode:
-        raise Stopped("the tools of requirements.txt could not be installed: is PyPI within reach?")
+        raise Stopped("the tools of requirements.txt could not be installed: is PyPI within reach, and this Python 3.10 or newer?")
     kept.write_text(wanted)
 
 
