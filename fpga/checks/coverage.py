@@ -118,8 +118,9 @@ def library(place, base, faults):
     unit = place / "board.cpp"
     unit.write_text("".join(f'#include "{source.resolve()}"\n' for source in sources) + "DESIGN(faulty, Faulty)\n")
     mutants.run(["g++", "-std=c++17", "-O2", "-w", "-shared", "-fPIC", "-fno-semantic-interposition", "-DVL_TIME_CONTEXT", "-DVM_TRACE=0",
-         "-DVM_COVERAGE=0", "-DVM_SC=0", f"-I{include}", f"-I{include / 'vltstd'}", f"-I{SHIM}", f"-I{folder}", unit, include / "verilated.cpp",
-         include / "verilated_threads.cpp", "-lpthread", "-o", library.with_suffix(".new")], place / "compiler.log")
+         "-DVM_COVERAGE=0", "-DVM_SC=0", f"-I{include}", f"-I{include / 'vltstd'}", f"-I{SHIM}", f"-I{folder}", unit,
+         *(include / f"{part}.cpp" for part in ("verilated", "verilated_threads", "verilated_vcd_c")),
+         "-Wl,-z,defs", "-lpthread", "-o", library.with_suffix(".new")], place / "compiler.log")
     library.with_suffix(".new").rename(library)
     return library
 
