@@ -41,6 +41,7 @@ mod unfit_lenses;
 mod unlisted;
 mod varied;
 mod verdicts;
+mod void_faults;
 mod within;
 
 use halfrow_tests::program::{Ended, Folder};
