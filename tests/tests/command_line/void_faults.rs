@@ -104,3 +104,29 @@ fn a_fault_of_a_grids_entry_is_held_against_the_grid() {
         assert_eq!(ended.code, Some(1), "{fault}: {}", ended.stdout);
     }
 }
+
+#[test]
+fn a_fault_of_conduct_is_refused_where_no_rule_is_tried() {
+    let folder = Folder::new();
+    for fault in [
+        "any-session",
+        "never-held",
+        "counters-kept",
+        "rows-anywhere",
+        "greedy-ack",
+        "damaged-ack",
+        "stuck-repeats",
+        "unkept-rule,instead=ack-beyond",
+        "unchecked-commit",
+    ] {
+        let board = format!("mock,fault={fault}");
+        let sentence = "it strikes where the rules of the wire are tried, and this run tries none";
+        refused(&folder, &small("soak", &["--frames", "9", "--board", &board]), sentence);
+    }
+    // Rows that are lost on the way are sent again.
+    for fault in ["packets-anew", "stuck-repeats,fault=lose,packet=60,toward=host"] {
+        let board = format!("mock,fault={fault}");
+        let ended = folder.halfrow(small("soak", &["--frames", "9", "--board", &board]));
+        assert_eq!(ended.code, Some(1), "{fault}: {}{}", ended.stdout, ended.stderr);
+    }
+}

@@ -1,6 +1,6 @@
 //! Faults that a run never reaches or a build cannot have, so that whoever asks for one can be told.
 
-use super::BoardFault;
+use super::{BoardFault, Conduct};
 use crate::core::Weight;
 use crate::options::{BurstBuild, OptionError, Options, TapCount};
 
@@ -22,6 +22,8 @@ pub struct Streamed {
     pub of_rules: Option<(usize, usize)>,
     /// Rows of the tallest frame that the board makes of its own, at speed or for the rules; none if it makes none.
     pub made: Option<usize>,
+    /// Whether the pipe to the board has a fault as well.
+    pub is_harmed: bool,
 }
 
 impl BoardFault {
@@ -56,6 +58,12 @@ impl BoardFault {
             }
             Self::SlowPath { .. } => Streamed::lacks_speed(streamed.made.is_some()),
             Self::LateSwap | Self::WrongClockClaim => Streamed::lacks_speed(streamed.at_speed),
+            Self::UncheckedCommit => streamed.lacks_rules(),
+            // Any run goes on after a RESET.
+            Self::Conduct(Conduct::PacketsAnew) => None,
+            // Rows and packets that come again, and sessions after the first, may show misconduct.
+            Self::Conduct(_) if streamed.is_harmed => None,
+            Self::Conduct(_) => streamed.lacks_rules(),
             Self::StuckCentre { bit, value: false } => lacks_centre_bit(bit, build.max_width),
             Self::TapOffset { columns: 0 } => {
                 Some("columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3".to_owned())
@@ -140,6 +148,14 @@ impl Streamed {
     fn lacks_speed(has_some: bool) -> Option<String> {
         (!has_some).then(|| {
             "it strikes in frames that the board makes at full speed, and there are none; ask for some"
+                .to_owned()
+        })
+    }
+
+    fn lacks_rules(&self) -> Option<String> {
+        self.of_rules.is_none().then(|| {
+            "it strikes where the rules of the wire are tried, and this run tries none; give it to `halfrow verify`, \
+             which tries them"
                 .to_owned()
         })
     }

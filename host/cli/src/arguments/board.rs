@@ -90,7 +90,9 @@ pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
     let at_speed = plan.at_speed != AtSpeed::Off;
     let capabilities = mock_capabilities(&build, plan);
     let (made, of_rules) = (plan.tallest_made(&capabilities), plan.rows_of_rules(&capabilities));
-    let streamed = Streamed { width, height, grid, frames, at_speed, of_rules, made };
+    // A target has at most one fault of the board, which is this one, and one of the pipe.
+    let is_harmed = target.options.iter().filter(|(key, _)| key == "fault").count() > 1;
+    let streamed = Streamed { width, height, grid, frames, at_speed, of_rules, made, is_harmed };
     match fault.without_effect(&streamed, &build) {
         None => Ok(()),
         Some(why) => Err(wrong_board(Failure::call(CallError::FaultWithoutEffect {
