@@ -130,3 +130,56 @@ fn a_fault_of_conduct_is_refused_where_no_rule_is_tried() {
         assert_eq!(ended.code, Some(1), "{fault}: {}{}", ended.stdout, ended.stderr);
     }
 }
+
+/// A run with frames of 64 columns.
+fn narrow<'a>(run: &[&'a str], board: &'a str) -> Vec<&'a str> {
+    [run, &["--width", "64", "--height", "16", "--radius", "40", "--board", board]].concat()
+}
+
+/// The middle of 64 columns is C = 63, which has bits 0 to 5, and that of the 2048 for the rules is C = 2047.
+#[test]
+fn a_fault_of_the_centre_is_held_against_every_centre() {
+    let folder = Folder::new();
+    let soak = ["soak", "--frames", "9"];
+    let middle = ["verify", "--centre-x", "31.5", "--at-speed", "0"];
+    let ignored = "every row is played with its centre in the middle; give another centre";
+    let stuck = |bit, level| format!("is {level} in bit={bit} for every row that is played");
+    for (run, fault, sentence) in [
+        (&soak[..], "centre-ignored", ignored.to_owned()),
+        (&middle, "centre-ignored", ignored.to_owned()),
+        (&middle, "stuck-centre,bit=0,value=1", stuck(0, 1)),
+        (&soak, "stuck-centre,bit=7", stuck(7, 0)),
+        (&soak, "stuck-centre,bit=12", "which has no bit=12".to_owned()),
+    ] {
+        let board = format!("mock,fault={fault}");
+        refused(&folder, &narrow(run, &board), &sentence);
+    }
+    for (run, fault) in [
+        (&["soak", "--frames", "9", "--centre-x", "20"][..], "centre-ignored"),
+        (&["verify", "--at-speed", "0"], "centre-ignored"),
+        (&["verify", "--at-speed", "0"], "stuck-centre,bit=0,value=1"),
+        // At full speed other centres have a turn as well.
+        (&["verify", "--centre-x", "31.5"], "centre-ignored"),
+        (&middle, "stuck-centre,bit=7"),
+        (&soak, "stuck-centre,bit=5"),
+    ] {
+        let board = format!("mock,fault={fault}");
+        let ended = folder.halfrow(narrow(run, &board));
+        assert_eq!(ended.code, Some(1), "{run:?}, {fault}: {}{}", ended.stdout, ended.stderr);
+    }
+}
+
+#[test]
+fn a_fault_of_a_data_line_is_held_against_the_depth() {
+    let folder = Folder::new();
+    let soak = ["--frames", "9", "--bits", "8", "--board"];
+    let call = |board: &'static str| small("soak", &[&soak[..], &[board]].concat());
+    let sentence = "no sample that is played has bit=11; give one from 0 to 7, or value=1";
+    refused(&folder, &call("mock,fault=stuck-data,bit=11,value=0"), sentence);
+    for fault in ["mock,fault=stuck-data,bit=7,value=0", "mock,fault=stuck-data,bit=11,value=1"] {
+        assert_eq!(folder.halfrow(call(fault)).code, Some(1), "{fault}");
+    }
+    // The rules are also tried with samples of more bits than the depth.
+    let verify = ["--bits", "8", "--at-speed", "0", "--board", "mock,fault=stuck-data,bit=11,value=0"];
+    assert_eq!(folder.halfrow(small("verify", &verify)).code, Some(1));
+}

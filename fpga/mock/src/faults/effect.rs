@@ -5,7 +5,7 @@ use crate::core::Weight;
 use crate::options::{BurstBuild, OptionError, Options, TapCount};
 
 /// What a board is given with one generation of tables, and what it makes besides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Streamed {
     /// Samples of a row.
     pub width: usize,
@@ -22,6 +22,10 @@ pub struct Streamed {
     pub of_rules: Option<(usize, usize)>,
     /// Rows of the tallest frame that the board makes of its own, at speed or for the rules; none if it makes none.
     pub made: Option<usize>,
+    /// W and C of all rows that are played, wherever they come from.
+    pub centres: Vec<(usize, u32)>,
+    /// The most bits of their depths.
+    pub bits: u32,
     /// Whether the pipe to the board has a fault as well.
     pub is_harmed: bool,
 }
@@ -45,13 +49,7 @@ impl BoardFault {
                 streamed.lacks_entry(row).or_else(|| streamed.ends_before(after, row))
             }
             Self::LostRow { row } => streamed.lacks_row(row),
-            Self::SpoiltRow { row, column, .. } => {
-                let (small, wide) = streamed.of_rules.unwrap_or_default();
-                let beyond = |rows| usize::from(row) >= rows;
-                let lacks_row = || lacks(row, streamed.height).filter(|_| beyond(small));
-                let lacks_column = || streamed.lacks_column(column?).filter(|_| beyond(wide));
-                lacks_row().or_else(lacks_column)
-            }
+            Self::SpoiltRow { row, column, .. } => streamed.lacks_sample(row, column),
             Self::WarmBit { row, .. } | Self::HiddenPause { row } => {
                 let rows = streamed.made.unwrap_or(0);
                 Streamed::lacks_speed(streamed.made.is_some()).or_else(|| lacks(row, rows))
@@ -64,7 +62,15 @@ impl BoardFault {
             // Rows and packets that come again, and sessions after the first, may show misconduct.
             Self::Conduct(_) if streamed.is_harmed => None,
             Self::Conduct(_) => streamed.lacks_rules(),
-            Self::StuckCentre { bit, value: false } => lacks_centre_bit(bit, build.max_width),
+            // The rules have samples of 12 bits played at every depth.
+            Self::StuckData { bit, value: false } if streamed.of_rules.is_none() => {
+                streamed.lacks_sample_bit(bit)
+            }
+            Self::CentreIgnored => streamed.lacks_other_centre(),
+            Self::StuckCentre { bit, value } => {
+                let lacks_bit = lacks_centre_bit(bit, build.max_width).filter(|_| !value);
+                lacks_bit.or_else(|| streamed.lacks_centre_bit_other_than(bit, value))
+            }
             Self::TapOffset { columns: 0 } => {
                 Some("columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3".to_owned())
             }
@@ -137,6 +143,15 @@ impl Streamed {
         self.height.max(self.made.unwrap_or(0))
     }
 
+    /// Frames for the rules, which are narrower or as wide as the board takes, may have a sample that streamed ones lack.
+    fn lacks_sample(&self, row: u16, column: Option<u16>) -> Option<String> {
+        let (small, wide) = self.of_rules.unwrap_or_default();
+        let beyond = |rows| usize::from(row) >= rows;
+        let lacks_row = || lacks(row, self.height).filter(|_| beyond(small));
+        let lacks_column = || self.lacks_column(column?).filter(|_| beyond(wide));
+        lacks_row().or_else(lacks_column)
+    }
+
     fn lacks_column(&self, column: u16) -> Option<String> {
         let Self { width, .. } = self;
         let last = width.saturating_sub(1);
@@ -157,6 +172,31 @@ impl Streamed {
             "it strikes where the rules of the wire are tried, and this run tries none; give it to `halfrow verify`, \
              which tries them"
                 .to_owned()
+        })
+    }
+
+    fn lacks_sample_bit(&self, bit: u8) -> Option<String> {
+        let last = self.bits.saturating_sub(1);
+        (u32::from(bit) > last)
+            .then(|| format!("no sample that is played has bit={bit}; give one from 0 to {last}, or value=1"))
+    }
+
+    fn lacks_other_centre(&self) -> Option<String> {
+        let is_middle = |&(width, centre2): &(usize, u32)| centre2 as usize + 1 == width;
+        self.centres.iter().all(is_middle).then(|| {
+            "every row is played with its centre in the middle; give another centre, or another fault"
+                .to_owned()
+        })
+    }
+
+    fn lacks_centre_bit_other_than(&self, bit: u8, value: bool) -> Option<String> {
+        let has_it = |&(_, centre2): &(usize, u32)| (centre2 >> bit & 1 == 1) == value;
+        self.centres.iter().all(has_it).then(|| {
+            let (level, other) = (u8::from(value), u8::from(!value));
+            format!(
+                "twice the centre's column is {level} in bit={bit} for every row that is played; give value={other}, or \
+                 another centre"
+            )
         })
     }
 

@@ -92,7 +92,11 @@ pub(crate) fn check_fault(target: &Target, plan: &Plan) -> Result<(), Failure> {
     let (made, of_rules) = (plan.tallest_made(&capabilities), plan.rows_of_rules(&capabilities));
     // A target has at most one fault of the board, which is this one, and one of the pipe.
     let is_harmed = target.options.iter().filter(|(key, _)| key == "fault").count() > 1;
-    let streamed = Streamed { width, height, grid, frames, at_speed, of_rules, made, is_harmed };
+    let played = plan.geometries(&capabilities);
+    let centres = played.iter().map(|geometry| (geometry.width(), geometry.centre2())).collect();
+    let bits = played.iter().map(|geometry| geometry.depth().bits()).max().unwrap_or(0);
+    let streamed =
+        Streamed { width, height, grid, frames, at_speed, of_rules, made, centres, bits, is_harmed };
     match fault.without_effect(&streamed, &build) {
         None => Ok(()),
         Some(why) => Err(wrong_board(Failure::call(CallError::FaultWithoutEffect {

@@ -53,10 +53,10 @@ pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generat
     corners
 }
 
-/// Rows of the tallest frame of all corners.
-pub(in crate::run) fn tallest_corner(capabilities: &Capabilities, seed: u64) -> Option<usize> {
+/// Sizes, depths and centres of the frames of all corners.
+pub(in crate::run) fn geometries_of_corners(capabilities: &Capabilities, seed: u64) -> Vec<Geometry> {
     let made = corners(capabilities, seed).into_iter().flatten();
-    made.map(|made| made.tables.geometry().height()).max()
+    made.map(|made| *made.tables.geometry()).collect()
 }
 
 /// As many low bits of `pattern` as do not exceed `most`.

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::variations::Build;
 use super::{AtSpeed, FrameSource, Plan, ScheduledFrame, Segment};
 use crate::board::Capabilities;
-use crate::run::at_speed::{FEW_AT_SPEED, known_bursts, tallest_corner};
-use crate::run::rules::{rows_of_rules, tallest_of_rules};
+use crate::run::at_speed::{FEW_AT_SPEED, geometries_of_corners, known_bursts};
+use crate::run::rules::{geometries_of_rules, rows_of_rules, tallest_of_rules};
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -222,12 +222,26 @@ impl Plan {
     #[must_use]
     pub fn tallest_made(&self, capabilities: &Capabilities) -> Option<usize> {
         let bursts = known_bursts(capabilities).ok()?;
-        let at_speed = self.at_speed != AtSpeed::Off;
-        let has_corners = at_speed && self.at_speed.soak().is_none() && self.amount(Part::Corners) > 0;
-        let usual = at_speed.then(|| self.tables.geometry().height());
-        let corner = has_corners.then(|| tallest_corner(capabilities, self.seed)).flatten();
+        let usual = (self.at_speed != AtSpeed::Off).then(|| self.tables.geometry().height());
+        let corner = self.corners(capabilities).iter().map(Geometry::height).max();
         let of_rules = self.tries_rules().then(|| tallest_of_rules(capabilities, bursts.trap));
         [usual, corner, of_rules].into_iter().flatten().max()
+    }
+
+    /// Sizes, depths and centres of the rows that a board with `capabilities` plays, streamed or made of its own.
+    #[must_use]
+    pub fn geometries(&self, capabilities: &Capabilities) -> Vec<Geometry> {
+        let streamed = self.schedule(&Build::of(capabilities)).into_iter().map(|segment| segment.geometry);
+        let rules = self.tries_rules().then(|| geometries_of_rules(capabilities, self.seed, self.phase));
+        let others = self.corners(capabilities).into_iter().chain(rules.unwrap_or_default());
+        [*self.tables.geometry()].into_iter().chain(streamed).chain(others).collect()
+    }
+
+    /// The geometries of the corners that are judged on a board with `capabilities`.
+    fn corners(&self, capabilities: &Capabilities) -> Vec<Geometry> {
+        let at_speed = self.at_speed != AtSpeed::Off && self.at_speed.soak().is_none();
+        let is_judged = at_speed && self.amount(Part::Corners) > 0 && known_bursts(capabilities).is_ok();
+        if is_judged { geometries_of_corners(capabilities, self.seed) } else { Vec::new() }
     }
 
     /// How much of `part` is to be judged; all of it when the plan has no selection.

@@ -29,7 +29,7 @@ mod without_effect;
 
 use std::mem;
 
-use halfrow_model::Geometry;
+use halfrow_model::{Geometry, Phase};
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
 
@@ -58,6 +58,13 @@ const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, 
 pub(super) fn rows_of_rules(capabilities: &Capabilities) -> (usize, usize) {
     let most = usize::from(capabilities.max_height);
     (small::ROWS.min(most), wide::ROWS.min(most))
+}
+
+/// Sizes, depths and centres of these frames.
+pub(super) fn geometries_of_rules(capabilities: &Capabilities, seed: u64, phase: Phase) -> Vec<Geometry> {
+    let small = Small::new(capabilities, seed, phase).map(|small| small.geometry);
+    let wide = small.and_then(|small| wide::geometry(capabilities, small.depth()));
+    small.into_iter().chain(wide).collect()
 }
 
 impl Run<'_> {

@@ -1,16 +1,15 @@
 //! Rows of the greatest width, with gaps.
 
-use halfrow_model::Geometry;
+use halfrow_model::{BitDepth, Geometry};
 use halfrow_protocol::message::{RefusalCode, RowPlace};
 use rand_pcg::Pcg64Mcg;
 
 use super::Rules;
 use super::compared::Compared;
-use crate::board::RowTiming;
+use crate::board::{Capabilities, RowTiming};
 use crate::result::{CheckName, Rule};
 use crate::run::at_speed::drawn_factors;
 use crate::run::findings::{During, End};
-use crate::run::plan::variations::Build;
 use crate::tables::Generation;
 
 /// The generation with which they are made.
@@ -19,6 +18,13 @@ const GENERATION: u8 = 0x69;
 const FRAME: u16 = 0xcba9;
 /// Two rows, so that the second pushes the first out.
 pub(super) const ROWS: usize = 2;
+
+/// Two rows of the greatest width; none if no board can have such.
+pub(super) fn geometry(capabilities: &Capabilities, depth: BitDepth) -> Option<Geometry> {
+    let width = capabilities.max_width.min(capabilities.ring) & !1;
+    let rows = ROWS.min(capabilities.max_height.into());
+    Geometry::new(width.into(), rows, depth, u32::from(width).checked_sub(1)?).ok()
+}
 
 impl Rules<'_, '_> {
     pub(super) fn wide(&mut self) -> Result<(), End> {
@@ -42,12 +48,9 @@ impl Rules<'_, '_> {
 
     /// Tables for two rows of the greatest width; none if the board can take none.
     fn wide_tables(&self) -> Option<Generation> {
-        let build = Build::of(&self.capabilities);
-        let width = usize::from(self.capabilities.max_width).min(build.ring) & !1;
-        let rows = ROWS.min(self.capabilities.max_height.into());
-        let geometry = Geometry::new(width, rows, self.small.geometry.depth(), width as u32 - 1).ok()?;
+        let geometry = geometry(&self.capabilities, self.small.geometry.depth())?;
         let mut draws = Pcg64Mcg::new(u128::from(self.small.seed) | 1 << 66);
-        let tables = drawn_factors(geometry, build.ring, &mut draws)?;
+        let tables = drawn_factors(geometry, self.capabilities.ring.into(), &mut draws)?;
         let kernel = self.small.tables[1].kernel.clone();
         Some(Generation { number: GENERATION, tables, kernel })
     }
