@@ -1,5 +1,7 @@
 //! `paper`: what it writes, what it finds, and what it refuses.
 
+use std::path::PathBuf;
+
 use halfrow_lab::paper::Item;
 use halfrow_tests::program::Folder;
 use serde_json::{Value, json};
@@ -152,6 +154,35 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
         refused_with(2, &folder, &[&["paper", "-o", "out"], &call[..]].concat(), " at line 2 column ");
     assert!(ended.stderr.len() < 1000, "{}", ended.stderr);
     refused(&folder, &["paper", "-o", "out", "fig4", "--lines", "lines.json"], "--photograph");
+}
+
+/// The lines may be of another photograph, or of this one before it was scaled or turned. Pixel 0 begins at -0.5.
+#[test]
+fn lines_that_are_not_in_the_photograph_are_refused() {
+    let folder = Folder::new();
+    let pixels =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../host/frames/tests/photographs/alpha.bmp.png");
+    folder.write("photograph.png", std::fs::read(pixels).unwrap());
+    let line = |[from, to]: [[f64; 2]; 2]| json!({ "from": from, "to": to, "is": "straight" });
+    let call = |ends| {
+        let (circle, first) =
+            (json!({ "centre": [36, 24], "radius": 60 }), line([[20.0, 10.0], [20.0, 40.0]]));
+        folder.write("lines.json", json!({ "circle": circle, "lines": [first, line(ends)] }).to_string());
+        ["paper", "fig4", "--photograph", "photograph.png", "--lines", "lines.json", "-o", "out"]
+    };
+    let sentence =
+        "entry 2 of `lines` in lines.json ends outside of the photograph, which has 72 x 48 pixels";
+    for ends in [
+        [[71.6, 8.0], [60.0, 40.0]],
+        [[60.0, 40.0], [71.6, 8.0]],
+        [[-0.6, 8.0], [10.0, 40.0]],
+        [[40.0, -0.6], [44.0, 40.0]],
+        [[40.0, 8.0], [44.0, 47.6]],
+    ] {
+        refused(&folder, &call(ends), sentence);
+    }
+    let ended = folder.halfrow(call([[-0.5, -0.5], [71.5, 47.5]]));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
 }
 
 /// Nothing would be farthest from straight in any projection.

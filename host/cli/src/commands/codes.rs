@@ -105,6 +105,7 @@ codes::codes! {
         Radius [path, radius] => "lines-file-without-circle",
         NoLine [path] => "lines-file-without-line",
         Line [path, number] => "scene-line-not-shown",
+        Outside [path, number, width, height] => "scene-line-outside",
     }
     PhotographError {
         Read [number] => "photograph-unreadable",

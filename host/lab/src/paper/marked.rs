@@ -85,6 +85,22 @@ pub enum MarkedError {
         /// Which, from 1.
         number: usize,
     },
+    /// A marked line ends outside of the photograph, so that it may be of another one.
+    #[error(
+        "entry {number} of `lines` in {} ends outside of the photograph, which has {width} x {height} pixels; mark it in this \
+         photograph, turned as it is shown",
+        path.display()
+    )]
+    Outside {
+        /// The file.
+        path: PathBuf,
+        /// Which, from 1.
+        number: usize,
+        /// Columns of the photograph.
+        width: usize,
+        /// Its rows.
+        height: usize,
+    },
 }
 
 #[derive(Deserialize)]
@@ -143,7 +159,19 @@ impl MarkedPhotograph {
             let found = ends.and_then(|(from, to)| Line::between([from, to], line.is));
             found.ok_or_else(|| MarkedError::Line { path: path(), number })
         });
-        let lines = marked.collect::<Result<_, _>>()?;
-        Ok(Self { image: frames::read_shown(photograph)?, centre: (column, row), radius, lines })
+        let marked = marked.collect::<Result<_, _>>()?;
+        let image = frames::read_shown(photograph)?;
+        let (width, height) = (image.width, image.height);
+        let is_shown = |line: &Marked| [line.from, line.to].into_iter().all(|end| shows(&image, end));
+        if let Some(place) = content.lines.iter().position(|line| !is_shown(line)) {
+            return Err(MarkedError::Outside { path: path(), number: place + 1, width, height });
+        }
+        Ok(Self { image, centre: (column, row), radius, lines: marked })
     }
+}
+
+/// Whether the point lies in a pixel of `image`. The middle of the first is at 0.
+fn shows(image: &RgbImage, [column, row]: [f64; 2]) -> bool {
+    let is_in = |at: f64, pixels: usize| (-0.5..=pixels as f64 - 0.5).contains(&at);
+    is_in(column, image.width) && is_in(row, image.height)
 }
