@@ -185,6 +185,22 @@ fn lines_that_are_not_in_the_photograph_are_refused() {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
 }
 
+#[test]
+fn a_circle_that_is_too_small_is_told_the_least() {
+    let folder = Folder::new();
+    folder.write("photograph.png", "is read behind the lines");
+    let call = ["paper", "fig4", "--photograph", "photograph.png", "--lines", "lines.json", "-o", "out"];
+    for radius in [0.5, -1.0] {
+        let circle = json!({ "centre": [319.5, 319.5], "radius": radius });
+        folder.write("lines.json", json!({ "circle": circle, "lines": [] }).to_string());
+        refused(
+            &folder,
+            &call,
+            &format!("has the radius {radius}; give at least 1, the pixels from its middle"),
+        );
+    }
+}
+
 /// Nothing would be farthest from straight in any projection.
 #[test]
 fn a_photograph_without_a_line_is_shown_by_none() {

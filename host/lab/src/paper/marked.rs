@@ -15,13 +15,10 @@ use std::path::{Path, PathBuf};
 use halfrow::files::text;
 use halfrow::frames::preview::RgbImage;
 use halfrow::frames::{self, ReadError};
-use halfrow_model::Equidistant;
+use halfrow_model::{Equidistant, LensError, MIN_RADIUS};
 use serde::Deserialize;
 
 use super::lines::{Constraint, Line};
-
-/// The radius of the lens by which directions are computed. The photograph's own radius only scales its points.
-const RADIUS: f64 = 1000.0;
 
 /// A photograph, its image circle and its lines.
 #[derive(Clone, Debug)]
@@ -60,13 +57,19 @@ pub enum MarkedError {
         /// What is wrong, and where.
         source: Box<dyn Error + Send + Sync>,
     },
-    /// The circle in the file of lines has no usable radius.
-    #[error("the circle in {} has the radius {radius}; give the pixels from its middle to where the lens images 90°", path.display())]
+    /// No lens has the radius of the circle in the file of lines.
+    #[error(
+        "the circle in {} has the radius {radius}; give at least {least}, the pixels from its middle to where the lens images 90°",
+        path.display(),
+        least = MIN_RADIUS
+    )]
     Radius {
         /// The file.
         path: PathBuf,
         /// The radius.
         radius: f64,
+        /// Why.
+        source: LensError,
     },
     /// The file of lines has none, so that there is nothing to keep straight.
     #[error("{} marks no line; mark at least one straight line of the photograph", path.display())]
@@ -144,15 +147,17 @@ impl MarkedPhotograph {
         let content: Content = serde_json::from_str(text::without_mark(&text))
             .map_err(|error| MarkedError::Content { path: path(), source: short(&error) })?;
         let Circle { centre: [column, row], radius } = content.circle;
-        let lens = Equidistant::from_radius(RADIUS).ok().filter(|_| radius >= 1.0);
-        let lens = lens.ok_or_else(|| MarkedError::Radius { path: path(), radius })?;
+        let lens = Equidistant::from_radius(radius).map_err(|source| MarkedError::Radius {
+            path: path(),
+            radius,
+            source,
+        })?;
         if content.lines.is_empty() {
             return Err(MarkedError::NoLine { path: path() });
         }
         let ray = |[x, y]: [f64; 2]| {
-            let (right, down) = ((x - column) / radius, (y - row) / radius);
-            let is_inside = right.hypot(down) <= 1.0;
-            lens.ray(right * RADIUS, down * RADIUS).filter(|_| is_inside)
+            let (right, down) = (x - column, y - row);
+            lens.ray(right, down).filter(|_| right.hypot(down) <= radius)
         };
         let marked = content.lines.iter().zip(1..).map(|(line, number)| {
             let ends = ray(line.from).zip(ray(line.to));
