@@ -84,3 +84,20 @@ fn a_lens_that_no_tables_can_follow_is_the_lens_file_s() {
         "the lens file lens.json cannot be used for these frames: a coefficient of inf",
     );
 }
+
+/// A lens so small that a grid is worse than fitted rows: what to use instead is told to whoever asked for the grid.
+#[test]
+fn only_who_asked_for_a_grid_is_told_not_to_use_it() {
+    let folder = Folder::new();
+    let told = |more: &[&'static str]| {
+        let ended = folder.halfrow(["lens", "--radius", "1"].iter().chain(more).copied());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let warning = ended.stdout.lines().find(|line| line.contains("farther off here")).map(str::to_owned);
+        warning.unwrap_or_else(|| panic!("{}", ended.stdout))
+    };
+    for more in [&[][..], &["--rows", "fitted"]] {
+        assert!(told(more).ends_with("that a board takes was found."), "{}", told(more));
+    }
+    let asked = told(&["--projection", "exact"]);
+    assert!(asked.ends_with("so use --rows fitted in place of --projection exact."), "{asked}");
+}

@@ -186,10 +186,14 @@ impl<'a> Figures<'a> {
             _ => None,
         })?;
         let nodes = k.map_or_else(String::new, |k| format!(", with a node every {} columns,", 1 << k));
+        let remedy = match self.optics.by {
+            TablesBy::Exact { .. } => ", so use --rows fitted in place of --projection exact",
+            TablesBy::Equation9 | TablesBy::Fitting => "",
+        };
         (exact.visible > 0.0 && exact.amounts.max > fitted.amounts.max).then(|| {
             format!(
                 "The exact projection is farther off here than fitted rows: no better grid of {entries} entries or fewer{nodes} \
-                 that a board takes was found, so use --rows fitted in place of --projection exact."
+                 that a board takes was found{remedy}."
             )
         })
     }
