@@ -83,9 +83,11 @@ pub enum OptionError {
         last: u32,
     },
     /// The fault is of a tap that a build of five taps does not have.
-    #[error("a build of five taps has no tap={tap}; give one from 1 to 5, or leave taps=five out")]
+    #[error("a build of five taps has no {key}={tap}; give one from 1 to 5, or leave taps=five out")]
     NoTap {
-        /// The tap that the fault would break.
+        /// The parameter of the fault that names the tap.
+        key: &'static str,
+        /// The tap.
         tap: u8,
     },
     /// The fault is of a kernel word that a build of five taps does not have.

@@ -20,6 +20,7 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
             "dead-tap,tap=6,taps=five",
             "a build of five taps has no tap=6; give one from 1 to 5, or leave taps=five out",
         ),
+        ("dead-tap,tap=3,reads=6,taps=five", "a build of five taps has no reads=6; give one from 1 to 5"),
         ("dead-tap,tap=4,reads=4", "tap=4,reads=4 lets the tap carry its own sample"),
         ("spoilt-row,column=128", "there is no column=128 in rows of 128 samples; give one from 0 to 127"),
         ("spoilt-row,row=16,column=128", "there is no row=16"),

@@ -88,10 +88,11 @@ impl BoardFault {
             Self::StuckAddress { bit, .. } if u32::from(bit) >= lines => {
                 Err(OptionError::NoAddressLine { bit, last: lines.saturating_sub(1) })
             }
-            Self::DeadTap { tap: tap @ (0 | 6), .. } | Self::DeadTap { reads: Some(tap @ (0 | 6)), .. }
-                if build.taps == TapCount::Five =>
-            {
-                Err(OptionError::NoTap { tap })
+            Self::DeadTap { tap: tap @ (0 | 6), .. } if build.taps == TapCount::Five => {
+                Err(OptionError::NoTap { key: "tap", tap })
+            }
+            Self::DeadTap { reads: Some(tap @ (0 | 6)), .. } if build.taps == TapCount::Five => {
+                Err(OptionError::NoTap { key: "reads", tap })
             }
             Self::KernelWord { weight: weight @ (Weight::G0 | Weight::G6), .. }
                 if build.taps == TapCount::Five =>

@@ -161,7 +161,7 @@ codes::codes! {
         OddWidth [max_width] => "board-width-odd",
         NoDepth => "board-without-depth",
         NoAddressLine [bit, last] => "fault-without-address-line",
-        NoTap [tap] => "fault-without-tap",
+        NoTap [key, tap] => "fault-without-tap",
         NoWeight [weight] => "fault-without-weight",
         NoLongerLatency [claimed, most] => "fault-without-longer-latency",
         NoOtherBank => "fault-without-other-bank",
