@@ -53,7 +53,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
     #[arg(env = "HALFROW_REQUIRE_HARDWARE", value_parser = yes_or_no)]
     require_hardware: Option<bool>,
-    /// Seed of noise, gaps, link test and the frames that the board makes
+    /// Seed of built-in frames, gaps, link test and the frames that the board makes
     #[arg(long, value_name = "SEED", env = "HALFROW_SEED", value_parser = whole_number())]
     seed: Option<u64>,
     #[command(flatten)]

@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     /// Only the frame with this name; may be given several times
     #[arg(long, value_name = "NAME")]
     only: Vec<Builtin>,
-    /// Seed of noise
+    /// Seed of the frames noise, extremes and street
     #[arg(long, default_value_t = 1, value_parser = whole_number())]
     seed: u64,
     /// The folder, made if it is not there
