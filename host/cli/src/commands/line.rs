@@ -28,7 +28,7 @@ pub(super) struct Line<Commands: Subcommand> {
     /// what the program was built from
     #[arg(short, long, global = true, action = ArgAction::Count)]
     pub(super) verbose: u8,
-    /// Hide progress; results are still printed
+    /// Hide progress and how photographs were fitted; results are still printed
     #[arg(short, long, global = true)]
     pub(super) quiet: bool,
     /// The settings file [default: halfrow/settings.toml in the user's configuration folder]
