@@ -65,8 +65,8 @@ pub fn differences(expected: &Frame, found: &Frame, missing: &MissingRows) -> Re
     Ok(difference_map(expected, found, missing)?.png)
 }
 
-/// The frame as a picture of at most `max_width` columns and `most_bytes` bytes, as large as that allows; none if not even
-/// [`MIN_WIDTH`] columns fit.
+/// The frame as a picture of at most `max_width` columns and `most_bytes` bytes, about as large as that allows; none if not
+/// even [`MIN_WIDTH`] columns fit.
 ///
 /// # Errors
 /// The PNG encoder's.
@@ -75,17 +75,45 @@ pub(super) fn preview(
     max_width: usize,
     most_bytes: usize,
 ) -> Result<Option<Picture>, EncodingError> {
+    let most = frame.width() / MIN_WIDTH;
     let mut side = frame.width().div_ceil(max_width);
     loop {
         let picture = Picture::new(&preview::thumbnail(frame, frame.width().div_ceil(side)))?;
         if picture.len() <= most_bytes {
             return Ok(Some(picture));
         }
-        if picture.width <= MIN_WIDTH {
+        if side >= most {
             return Ok(None);
         }
         // The bytes fall with the square of the side.
         let excess = picture.len() as f64 / most_bytes.max(1) as f64;
-        side = (side + 1).max((side as f64 * excess.sqrt()) as usize);
+        side = (side + 1).max((side as f64 * excess.sqrt()) as usize).min(most);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Phase};
+    use rand_core::Rng;
+    use rand_pcg::Pcg64Mcg;
+
+    use super::*;
+
+    /// Noise whose neighbours cancel out where a pixel is the mean of several: the bytes fall faster than with the square of
+    /// the side.
+    #[test]
+    fn a_preview_is_not_narrower_than_what_still_shows_something() {
+        let mut draws = Pcg64Mcg::new(1);
+        let four = |_| {
+            let drawn = draws.next_u32();
+            let [one, other] = [drawn & 4095, drawn >> 16 & 4095].map(|sample| sample as u16);
+            [one, other, 4095 - one, 4095 - other]
+        };
+        let samples = (0..512 * 256 / 4).flat_map(four).collect();
+        let frame = Frame::new(512, BitDepth::Twelve, Phase::Grbg, samples).unwrap();
+        let narrowest = developed(&frame, 64).unwrap().len();
+        let width = |most_bytes| preview(&frame, 512, most_bytes).unwrap().map(|picture| picture.width);
+        assert_eq!(width(narrowest), Some(64));
+        assert_eq!(width(narrowest - 1), None);
     }
 }
