@@ -47,7 +47,8 @@ pub use fast::{Corrector, ModelPath, Signer, UnavailablePath, UnknownPath};
 pub use frame::{BitDepth, Frame, FrameError};
 pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
 pub use grid::{
-    GridResidual, GridResiduals, GridRoomError, GridShape, GridShapeError, ResidualSum, RowValues,
+    GridResidual, GridResiduals, GridRoomError, GridShape, GridShapeError, INNER_DEGREES, INNER_ROWS,
+    ResidualSum, RowValues, VISIBLE,
 };
 pub use interpolant::{Interpolant, UnknownInterpolant};
 pub use kernel::{Kernel, KernelError, NODES, TAP_NAMES, Taps, WEIGHT_NAMES, WEIGHT_ONE};

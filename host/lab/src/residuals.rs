@@ -1,6 +1,6 @@
 //! What tables leave of a lens's distortion.
 
-use halfrow_model::{Camera, GridResidual, ResidualSum, TableSet};
+use halfrow_model::{Camera, GridResidual, ResidualSum, TableSet, VISIBLE};
 use serde::Serialize;
 
 /// Mean and largest amount, in pixels.
@@ -17,6 +17,9 @@ impl From<GridResidual> for Amounts {
         Self { mean, max }
     }
 }
+
+// A key of results names it.
+const _: () = assert!(VISIBLE == 0.05);
 
 /// The amounts, in columns, in one part of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

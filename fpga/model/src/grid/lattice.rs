@@ -6,18 +6,21 @@ use super::projection::{POLE, ProjectedRow};
 use super::residual_sum::{GridResidual, ResidualSum};
 use crate::{Camera, RowValues, TableSet};
 
-/// The least cos θ at which an output counts as inner: 85 degrees off the axis.
+/// How far off the axis outputs count as inner, in degrees.
+pub const INNER_DEGREES: f64 = 85.0;
+
+/// Its cosine, which no constant can be computed by.
 const INNER: f64 = 0.087_155_742_747_658_17;
 
 /// The share of the circle's height within which rows count as inner.
-const INNER_ROWS: f64 = 0.9;
+pub const INNER_ROWS: f64 = 0.9;
 
 /// The errors that tables leave, against the exact projection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GridResiduals {
     /// In the whole image circle: up to 90 degrees off the axis, except the 500th part of its height next to the poles.
     pub circle: GridResidual,
-    /// In its inner part: up to 85 degrees off the axis and within 0.9 of the circle's height.
+    /// In its inner part: up to [`INNER_DEGREES`] off the axis and within [`INNER_ROWS`] of the circle's height.
     pub inner: GridResidual,
     /// In the rest of the circle: the rim and what is next to the poles.
     pub rim: GridResidual,
@@ -155,5 +158,15 @@ impl Camera {
             }
         };
         1.0 - (0..height).map(shown).sum::<usize>() as f64 / (width * height) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inner_part_ends_at_its_degrees() {
+        assert!((INNER - INNER_DEGREES.to_radians().cos()).abs() < 1e-15);
     }
 }

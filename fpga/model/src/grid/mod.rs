@@ -12,9 +12,9 @@ mod shape;
 mod values;
 
 pub use choice::GridRoomError;
-pub use lattice::GridResiduals;
+pub use lattice::{GridResiduals, INNER_DEGREES, INNER_ROWS};
 pub(crate) use lattice::{height_in_circle, is_inner};
-pub use residual_sum::{GridResidual, ResidualSum};
+pub use residual_sum::{GridResidual, ResidualSum, VISIBLE};
 pub use shape::{GridShape, GridShapeError};
 pub use values::RowValues;
 pub(crate) use values::{RowNodes, curve, rounded};

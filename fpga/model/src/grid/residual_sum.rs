@@ -1,7 +1,7 @@
 //! The errors of the sources, added up.
 
 /// The least error that can be seen, in columns.
-const VISIBLE: f64 = 0.05;
+pub const VISIBLE: f64 = 0.05;
 
 /// How many columns away from the right place outputs are taken, for one part of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -10,7 +10,7 @@ pub struct GridResidual {
     pub mean: f64,
     /// The largest error.
     pub max: f64,
-    /// The share of outputs with an error above 0.05, 0 to 1.
+    /// The share of outputs with an error above [`VISIBLE`], 0 to 1.
     pub share: f64,
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use halfrow_model::{GridShape, LONGEST_RING};
+use halfrow_model::{GridShape, INNER_DEGREES, INNER_ROWS, LONGEST_RING, VISIBLE};
 use halfrow_program::files::prepare_files;
 use serde_json::{Map, Value, json};
 
@@ -139,7 +139,7 @@ impl<'a> Figures<'a> {
         let Some(first) = self.all.first() else { return Vec::new() };
         let amounts = |Amounts { mean, max }: Amounts| format!("{mean:9.4} {max:9.4}");
         let head = format!("error left at {} samples, in pixels", grouped(first.residuals.samples));
-        let mut lines = vec![format!("{head:<50} mean       max   inner max  above 0.05    rim max")];
+        let mut lines = vec![format!("{head:<50} mean       max   inner max  above {VISIBLE}    rim max")];
         for left in &self.all {
             let name = left.by.how(left.shape);
             let Residuals { circle, inner, rim, .. } = &left.residuals;
@@ -152,13 +152,13 @@ impl<'a> Figures<'a> {
             "vertical, whatever the tables",
             amounts(first.residuals.vertical)
         ));
-        lines.push(
-            "inner: up to 85 degrees off the axis, and up to 0.9 of the height of the circle of 180 degrees; \
+        lines.push(format!(
+            "inner: up to {INNER_DEGREES} degrees off the axis, and up to {INNER_ROWS} of the height of the circle of 180 degrees; \
              rim: everything else, with the poles."
-                .to_owned(),
-        );
-        lines
-            .push("above 0.05: the share of the inner part that is off by more than 0.05 pixels.".to_owned());
+        ));
+        lines.push(format!(
+            "above {VISIBLE}: the share of the inner part that is off by more than {VISIBLE} pixels."
+        ));
         lines.push("Rows are kept (Eq. 7): level lines bend as before.".to_owned());
         lines.extend(self.beyond());
         lines.extend(self.warning());

@@ -2,7 +2,10 @@
 
 use halfrow::frames::parallel;
 use halfrow::optics::{PAPER_SIZE, TablesBy};
-use halfrow_model::{Camera, CameraError, Equidistant, GridResidual, GridResiduals};
+use halfrow::words::grouped;
+use halfrow_model::{
+    Camera, CameraError, Equidistant, GridResidual, GridResiduals, INNER_DEGREES, INNER_ROWS, VISIBLE,
+};
 
 use super::cameras::{self, DSL215, FISHEYE_MODEL, PAPER, SENSOR};
 use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
@@ -55,17 +58,19 @@ fn aside(size: (usize, usize), centre: (f64, f64)) -> Result<Camera, CameraError
 /// The table, and the largest errors of the exact projection compared with values computed elsewhere.
 pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
     let mut exhibit = Exhibit::new(Item::Residuals);
-    exhibit.remark(
+    exhibit.remark(format!(
         "How many columns of the fisheye picture an output is taken from beside its place in the exact projection (Eqs. 5 to 7), \
-         at every output. The inner picture is what is up to 85° off the axis and within 0.9 of the image circle's \
+         at every output. The inner picture is what is up to {INNER_DEGREES}° off the axis and within {INNER_ROWS} of the image circle's \
          height; the rim is the rest of the circle, the poles among it. What is beyond 90° has no place in the exact \
          projection: a grid goes on there as at the rim, above and below the poles as in the row next to them.",
-    );
-    exhibit.remark(
-        "A grid is the best of at most 2,048 entries, which every board with datapath 2 has room for, and of 4,096 for the full \
+    ));
+    exhibit.remark(format!(
+        "A grid is the best of at most {} entries, which every board with datapath 2 has room for, and of {} for the full \
          sensor. It is accepted when its largest error in the inner picture is not above that of a grid by formula, which was \
          computed elsewhere.",
-    );
+        grouped(BANK),
+        grouped(LARGE_BANK)
+    ));
     let (mut ways, mut parts) = (Vec::new(), Vec::new());
     let all = parallel::map(&CASES, |_, case| CaseResiduals::of(case));
     let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -83,7 +88,7 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
     exhibit.tables.push(table(
         "residuals-exact",
         "What the exact projection leaves, in pixels.",
-        &PARTS,
+        &parts_columns(),
         parts,
     ));
     Ok(exhibit)
@@ -92,18 +97,22 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
 const WAYS: [&str; 8] =
     ["lens", "frame", "axis at", "Eq. 9", "fitted rows", "exact projection", "v, k", "entries"];
 
-const PARTS: [&str; 10] = [
-    "lens",
-    "frame",
-    "axis at",
-    "inner mean",
-    "largest",
-    "above 0.05",
-    "rim mean",
-    "rim largest",
-    "rim above 0.05",
-    "beyond 90°",
-];
+fn parts_columns() -> [String; 10] {
+    let (inner, rim) = (format!("above {VISIBLE}"), format!("rim above {VISIBLE}"));
+    [
+        "lens",
+        "frame",
+        "axis at",
+        "inner mean",
+        "largest",
+        &inner,
+        "rim mean",
+        "rim largest",
+        &rim,
+        "beyond 90°",
+    ]
+    .map(str::to_owned)
+}
 
 /// What each way leaves in one case.
 struct CaseResiduals {
@@ -178,7 +187,7 @@ fn claim(case: &Case, left: &CaseResiduals) -> Claim {
     }
 }
 
-fn table(name: &'static str, caption: &str, columns: &[&str], rows: Vec<Vec<Cell>>) -> Table {
-    let columns = columns.iter().map(|&name| name.to_owned()).collect();
+fn table(name: &'static str, caption: &str, columns: &[impl ToString], rows: Vec<Vec<Cell>>) -> Table {
+    let columns = columns.iter().map(ToString::to_string).collect();
     Table { name, caption: caption.to_owned(), columns, rows, on_page: true }
 }
