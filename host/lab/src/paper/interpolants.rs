@@ -45,10 +45,10 @@ fn value(interpolant: Interpolant, x: f64) -> f64 {
 /// The curves between two green samples, and the weights that make them.
 pub(super) fn exhibit() -> Exhibit {
     let mut exhibit = Exhibit::new(Item::Fig8);
-    exhibit.remark(
-        "A smooth edge (dashed) is sampled in green (dots on it) and, 40 darker, in red. The curves run between the green \
+    exhibit.remark(format!(
+        "A smooth edge (dashed) is sampled in green (dots on it) and, {OTHER_COLOUR} darker, in red. The curves run between the green \
          samples at x = 0 and x = 2. Nearest and linear see two green samples, cubic four, Hermite two and three red ones.",
-    );
+    ));
     exhibit.pictures.extend(PARTS.map(|(name, caption, interpolants)| Picture {
         name: name.to_owned(),
         caption: caption.to_owned(),

@@ -4,7 +4,7 @@ use super::exhibit::largest;
 use super::lines::Line;
 
 /// How far from the middle shapes are measured, in degrees of longitude and latitude: as far as every view shows them.
-const SHOWN: (f64, f64) = (60.0, 45.0);
+pub(super) const SHOWN: (f64, f64) = (60.0, 45.0);
 
 /// Degrees between two of these directions. A view's derivatives are computed over half of it to either side.
 const STEP: f64 = 2.5;

@@ -194,7 +194,9 @@ fn table_of(kept: &[Quality], lines: usize) -> Table {
         name: "fig-4-lines",
         caption: format!(
             "How far a line is from its chord at most, of {lines}, in pixels of a picture of {SIDE}; and how far small shapes are \
-             from what they are, mean |ln(σ1/σ2)| over ±60° of longitude and ±45° of latitude."
+             from what they are, mean |ln(σ1/σ2)| over ±{}° of longitude and ±{}° of latitude.",
+            quality::SHOWN.0,
+            quality::SHOWN.1
         ),
         columns: ["projection", "farthest from straight, px", "shapes, mean |ln(σ1/σ2)|"]
             .map(str::to_owned)

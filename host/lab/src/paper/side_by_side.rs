@@ -40,11 +40,11 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
          R = 100 and one scale for all three. Below them the street's façades as the datapath corrects them, through the paper's \
          lens and through a measured DSL215; a thin line stands in the mean column of every edge between two houses.",
     );
-    exhibit.remark(
+    exhibit.remark(format!(
         "The bend of an edge is found from the pixels of the frame: in each row that shows it, the place of the strongest step \
-         between samples of one colour, and from those, how far the median of 15 rows that follow each other is from the mean \
+         between samples of one colour, and from those, how far the median of {ROWS} rows that follow each other is from the mean \
          column of all.",
-    );
+    ));
     maps(&mut exhibit)?;
     let cameras = [
         (PAPER, "paper", cameras::paper(PAPER_SIZE)?),

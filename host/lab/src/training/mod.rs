@@ -16,7 +16,8 @@ pub use measure::{Gains, Spread, measure};
 pub use model::{Model, Warp};
 
 use halfrow_model::{
-    CorrectError, FrameError, GeometryError, Interpolant, Kernel, KernelError, LensError, TableError, Taps,
+    CorrectError, FrameError, GeometryError, Interpolant, Kernel, KernelError, LensError, MAX_HEIGHT,
+    MAX_WIDTH, MIN_WIDTH, TableError, Taps,
 };
 
 use halfrow::frames::preview::RgbImage;
@@ -39,7 +40,12 @@ pub struct Trained {
 #[derive(Debug, thiserror::Error)]
 pub enum TrainingError {
     /// The photograph has a size that no frame can have.
-    #[error("a photograph cannot be a frame; scale it to 64 to 2592 columns and at most 2048 rows")]
+    #[error(
+        "a photograph cannot be a frame; scale it to {least} to {most} columns and at most {rows} rows",
+        least = MIN_WIDTH,
+        most = MAX_WIDTH,
+        rows = MAX_HEIGHT
+    )]
     Geometry(#[from] GeometryError),
     /// The photographs have too little detail to determine a kernel.
     #[error("the photographs determine no kernel; give some with detail in them")]
