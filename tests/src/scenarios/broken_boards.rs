@@ -163,6 +163,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=ack-beyond",
         "as the first row that is not acknowledged (next_row_out)",
     ),
+    fails(
+        "a close that is counted as a session",
+        ",fault=unkept-rule,instead=counted-close",
+        "a greeting must open the next session",
+    ),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

@@ -7,7 +7,7 @@ use halfrow::link::{Candidate, Link};
 use halfrow::result::{Counter, Finding, Report};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_protocol::message::{RowOut, Status, Welcome};
+use halfrow_protocol::message::{ResetLevel, RowOut, Status, Welcome};
 use halfrow_protocol::{Damage, Decoder, Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{judge_by_plan, open};
@@ -148,6 +148,32 @@ fn no_packet_has_the_number_of_a_session_that_is_yet_to_come() {
     assert!(opened.len() > 4 && sent.iter().any(|(_, session)| !opened.contains(session)), "{opened:?}");
     for (before, session) in sent.iter() {
         assert!(!opened[*before..].contains(session), "{session} while {before} of {opened:?} were open");
+    }
+}
+
+/// Once a session is closed, the greeting that opened it opens another one.
+#[test]
+fn a_greeting_that_comes_again_behind_each_close_makes_no_sound_board_fail() {
+    for is_next in [true, false] {
+        let (mut greeting, mut late) = (None, None);
+        let alter = move |toward, packet: Passing| {
+            if toward == Toward::Host {
+                return vec![packet];
+            }
+            let is_greeting = packet.is(Kind::Hello);
+            let copy = if is_greeting { late.take() } else { None };
+            if is_greeting {
+                greeting = Some(packet.clone());
+            }
+            if packet.is(Kind::Reset) && packet.payload[0] == ResetLevel::Session as u8 {
+                late.clone_from(&greeting);
+            }
+            let behind = if is_next { late.take() } else { None };
+            copy.into_iter().chain([packet]).chain(behind).collect()
+        };
+        let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+        assert_eq!(report.verdict(), Verdict::Error, "{is_next}: {}", report.headline());
+        assert!(report.headline().contains("may have reached it twice"), "{}", report.headline());
     }
 }
 

@@ -177,7 +177,7 @@ impl Board {
         };
         self.answer(header, self.session.number(), &reply);
         if matches!(request, Request::Reset(reset) if reset.level == ResetLevel::Session) {
-            self.session.close();
+            self.close_session();
         }
         Ok(())
     }

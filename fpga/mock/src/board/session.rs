@@ -64,6 +64,11 @@ impl Session {
         self.holder = None;
     }
 
+    /// Takes the next number, after 255 the number 1.
+    fn count(&mut self) {
+        self.last_number = self.last_number.checked_add(1).unwrap_or(1);
+    }
+
     /// How much of the silence a host other than the holder still has to wait for.
     fn held_for(&self, host: u32, now: Duration) -> Duration {
         match &self.holder {
@@ -73,7 +78,7 @@ impl Session {
     }
 
     fn open(&mut self, hello: &Hello, now: Duration) {
-        self.last_number = self.last_number.checked_add(1).unwrap_or(1);
+        self.count();
         self.holder = Some(Holder { nonce: hello.nonce, host: hello.host, heard: now });
     }
 
@@ -110,6 +115,14 @@ impl Board {
             build: 0,
             serial: self.options.serial,
         })
+    }
+
+    /// Closes the session after the answer to the RESET that asks for it.
+    pub(super) fn close_session(&mut self) {
+        self.session.close();
+        if self.has(Conduct::CountedClose) {
+            self.session.count();
+        }
     }
 
     /// Drops what `reset` names. The session itself is closed after the reply.

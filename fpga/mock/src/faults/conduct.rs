@@ -29,12 +29,20 @@ pub enum Conduct {
     AnyFollower,
     /// It takes rows as acknowledged that it has not sent yet.
     AckBeyond,
+    /// It counts the close of a session as a session.
+    CountedClose,
 }
 
 impl Conduct {
     /// Those that break a rule which a run must try on purpose, by their names.
-    pub(crate) const UNKEPT: [Self; 5] =
-        [Self::PartialWrite, Self::PlaceInPacket, Self::AckRefused, Self::AnyFollower, Self::AckBeyond];
-    pub(crate) const UNKEPT_NAMES: [&str; 5] =
-        ["partial-write", "place-in-packet", "ack-refused", "any-follower", "ack-beyond"];
+    pub(crate) const UNKEPT: [Self; 6] = [
+        Self::PartialWrite,
+        Self::PlaceInPacket,
+        Self::AckRefused,
+        Self::AnyFollower,
+        Self::AckBeyond,
+        Self::CountedClose,
+    ];
+    pub(crate) const UNKEPT_NAMES: [&str; 6] =
+        ["partial-write", "place-in-packet", "ack-refused", "any-follower", "ack-beyond", "counted-close"];
 }

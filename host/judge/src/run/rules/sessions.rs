@@ -12,8 +12,8 @@ use super::counts::equal;
 use super::greetings::another_session;
 use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
-use super::{FIRST_FACTOR, Refusals, Rules, broken};
-use crate::board::{Board, BoardError, Given, Response, Status};
+use super::{FIRST_FACTOR, Refusals, Rules, broken, doubted};
+use crate::board::{Board, BoardError, Given, Response, Status, Tally};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::at_speed::known_bursts;
 use crate::run::findings::{During, End};
@@ -34,6 +34,8 @@ const MOST_VERSION: u16 = u8::MAX as u16 - 1;
 const PENDING: (u16, u8) = (0x4321, 0x3c);
 /// Frames of a burst that have been made when its session ends: every board has records for two.
 const FEW: u32 = 2;
+/// The answers to the RESET that closes a session, to a request in that session, and to the next greeting.
+const ANSWERS_TO_CLOSE: u64 = 3;
 /// The first row that is trapped in it. A board that forgot what it expects would trap the row before.
 const SECOND_ROW: usize = 1;
 
@@ -243,24 +245,37 @@ impl Rules<'_, '_> {
 
     /// Last of all: a RESET that closes the session. After it another host may have the board.
     pub(super) fn closed(&mut self) -> Result<(), End> {
+        let (mut wrong, mut requests) = (Ok(()), 0);
         for _ in 0..TIMES {
             self.drop_rows()?;
             self.rows_again()?;
             let before = self.status()?;
-            let own = self.run.board.session();
+            let (own, heard) = (self.run.board.session(), self.heard());
             self.close(own)?;
             match self.greet() {
                 Err(BoardError::Held { .. }) => return Ok(()),
                 Err(error) => return Err(End::board(CheckName::Rules, &error)),
                 Ok(()) => self.same_board_greets()?,
             }
-            // Otherwise another host had the board meanwhile, or its supply failed.
-            if self.run.board.session() == next(own) {
+            let (right, found) = (next(own), self.run.board.session());
+            if found == right {
                 self.begun_anew(Rule::Closed, &before)?;
-                break;
+                return self.forget();
             }
+            // Another host had the board meanwhile, its supply failed, or an old greeting came again, which the board answers.
+            requests += (self.heard() - heard).saturating_sub(ANSWERS_TO_CLOSE);
+            wrong = Err(another_session(Rule::NewSession, right, found));
         }
-        self.forget()
+        wrong.map_err(|end| match requests {
+            0 => end,
+            _ => doubted(end.finding().clone(), Doubt::RequestsTwice { requests }),
+        })
+    }
+
+    /// How many packets came, whosever they were.
+    fn heard(&self) -> u64 {
+        let Tally { packets_in, strays, .. } = self.run.board.tally();
+        packets_in + strays
     }
 
     fn close(&mut self, session: u8) -> Result<(), End> {
