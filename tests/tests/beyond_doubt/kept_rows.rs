@@ -4,12 +4,14 @@
 use std::collections::BTreeSet;
 
 use halfrow::result::{CheckName, Counter, Finding, RepeatedRow, Report, Rule};
+use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{Capabilities, Status};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{failed_check, judge_by_plan};
 
+use super::rule_by_rule::altering;
 use super::rules::{broken, plan, said_by};
 
 /// Bytes of a row's place, which begins with its sequence number (WIRE.md, 20).
@@ -82,6 +84,38 @@ fn a_board_that_ignores_acknowledgements_fails() {
     assert_eq!(failed_check(&report), Some(CheckName::Rules), "{}", report.headline());
     let Finding::CounterWrong { counter, .. } = report.finding else { panic!("{}", report.headline()) };
     assert_eq!(counter, Counter::NextRowOut);
+}
+
+/// The link loses the first row of the frames, long before.
+#[test]
+fn a_board_that_ignores_acknowledgements_fails_over_a_link_that_loses_a_row_too() {
+    let (mut is_lost, mut missed) = (false, 0);
+    let report = altering(move |toward, packet| match packet.reply() {
+        _ if packet.is(Kind::RowIn) && !std::mem::replace(&mut is_lost, true) => Vec::new(),
+        _ if packet.is(Kind::RowAck) => {
+            missed += 1;
+            Vec::new()
+        }
+        Some(Reply::Status(status)) if toward == Toward::Host => {
+            let packets = status.packets + missed;
+            vec![packet.saying(&Reply::Status(Status { packets, ..status }))]
+        }
+        _ => vec![packet],
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::Rules), "{}", report.headline());
+    let Finding::CounterWrong { counter, .. } = report.finding else { panic!("{}", report.headline()) };
+    assert_eq!(counter, Counter::NextRowOut);
+}
+
+/// It loses them each time, and brings STATUS twice, so that the board counts as many packets as were sent.
+#[test]
+fn a_link_that_loses_acknowledgements_and_doubles_what_asks_for_them_makes_no_sound_board_fail() {
+    let report = altering(|toward, packet| match toward {
+        Toward::Board if packet.is(Kind::RowAck) => Vec::new(),
+        Toward::Board if packet.is(Kind::Status) => vec![packet.clone(), packet],
+        _ => vec![packet],
+    });
+    assert_ne!(report.verdict(), Verdict::Fail, "{}", report.headline());
 }
 
 /// The host asks again for a row that the board has, by sending black samples.

@@ -1,5 +1,8 @@
 //! What the rules have a board take, keep or free, and what of that nobody hears of: each end names the counter that was looked at.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use halfrow::result::{Counter, Doubt, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
@@ -14,7 +17,10 @@ use super::rules::plan;
 const WAITING: u32 = 2;
 
 /// The report on a board whose counters `alter` changes, and whose host's packets all reach it, except those that are `lost`.
-fn counting(mut alter: impl FnMut(&mut Status) + Send + 'static, lost: fn(&Passing) -> bool) -> Report {
+fn counting(
+    mut alter: impl FnMut(&mut Status) + Send + 'static,
+    lost: impl Fn(&Passing) -> bool + Send + 'static,
+) -> Report {
     let altered = move |toward, packet: Passing| match packet.reply() {
         Some(Reply::Status(mut status)) if toward == Toward::Host => {
             alter(&mut status);
@@ -89,6 +95,14 @@ fn a_row_that_is_freed_by_damage_that_nobody_counts_is_not_said_to_stay_away() {
 
 #[test]
 fn a_row_that_came_and_is_never_acknowledged_is_not_said_to_stay_away() {
-    let report = counting(|_| {}, |packet| packet.is(Kind::RowAck));
+    let is_full = Arc::new(AtomicBool::new(false));
+    let fills = Arc::clone(&is_full);
+    let report = counting(
+        move |status| {
+            let rows = status.next_row_in - status.next_row_out;
+            fills.fetch_or(rows == output_banks() + WAITING, Ordering::Relaxed);
+        },
+        move |packet| packet.is(Kind::RowAck) && is_full.load(Ordering::Relaxed),
+    );
     assert_eq!(told(&report), (Counter::NextRowOut, -1, Rule::Banks, Doubt::AnswerLost {}));
 }

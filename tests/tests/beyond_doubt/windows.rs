@@ -108,6 +108,24 @@ fn a_board_that_takes_rows_as_acknowledged_that_it_never_sent_fails_over_a_link_
     );
 }
 
+/// The link loses each of these acknowledgements.
+#[test]
+fn a_board_of_which_it_is_not_known_what_it_takes_as_acknowledged_does_not_pass() {
+    let mut next_row = 0;
+    let report = altering(move |toward, packet| {
+        if let (true, Some(named)) = (packet.is(Kind::Reset), packet.payload.get(NEXT_ROW)) {
+            next_row = u32::from_le_bytes(named.try_into().unwrap());
+        }
+        let is_beyond = toward == Toward::Board && packet.header.window == next_row + BANKS;
+        Vec::from_iter((!is_beyond || !packet.is(Kind::RowAck)).then_some(packet))
+    });
+    let Finding::WrongOverDoubtfulLink { found, .. } = &report.finding else {
+        panic!("{}", report.headline())
+    };
+    let is_of_packets = matches!(**found, Finding::CounterWrong { counter: Counter::Packets, .. });
+    assert!(is_of_packets && report.verdict() == Verdict::Error, "{}", report.headline());
+}
+
 fn is_without_credit(refusal: &Refusal) -> bool {
     (refusal.kind, refusal.code) == (Kind::RowIn.code(), RefusalCode::Credit)
 }

@@ -6,6 +6,7 @@ use halfrow_protocol::message::{RefusalCode, RowPlace};
 use super::compared::Compared;
 use super::counts::equal;
 use super::rows::{FRAME, GENERATION, TRIES};
+use super::sessions::TIMES;
 use super::{Rules, answer, broken, counter_wrong, doubted, miscounted, of_rows, other_row};
 use crate::board::{BoardError, NumberedFrame, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
@@ -258,12 +259,11 @@ impl Rules<'_, '_> {
     fn acknowledge_one(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let is_pushed = kept.height == 1;
         self.run.board.disregard_rows(is_pushed.into());
-        let mut had_it = false;
+        let mut came = 0;
         for _ in 0..TRIES {
-            self.run.board.acknowledge_alone(kept.first + 1);
-            let status = self.status()?;
-            had_it = self.run.board.had_each_packet_once(&status);
-            if is_one_acknowledged(kept, &status)? {
+            let acknowledged = self.acknowledge_alone(kept.first + 1)?;
+            came += usize::from(acknowledged.has_surely_come());
+            if is_one_acknowledged(kept, &acknowledged.status)? {
                 self.run.board.disregard_rows(0);
                 self.right += 1;
                 if is_pushed {
@@ -275,10 +275,10 @@ impl Rules<'_, '_> {
             }
         }
         let not_freed = counter_wrong(Some(Rule::Banks), Counter::NextRowOut, kept.first, kept.first + 1);
-        Err(if had_it {
-            End::failed(CheckName::Rules, not_freed)
-        } else {
+        Err(if came < TIMES {
             doubted(not_freed, Doubt::AnswerLost {})
+        } else {
+            End::failed(CheckName::Rules, not_freed)
         })
     }
 

@@ -2,15 +2,40 @@
 
 use halfrow_protocol::Kind;
 
-use super::Rules;
 use super::counts::equal;
 use super::rows::TRIES;
-use crate::result::{CheckName, Counter, Rule};
+use super::{Rules, counter_wrong, doubted};
+use crate::board::{Status, Tally};
+use crate::result::{CheckName, Counter, Doubt, Rule};
 use crate::run::findings::{During, End};
 use crate::run::sessions::window::window_wrong;
 
 /// A row sequence number below the greatest that the rules reach, and far from any that they used.
 const SMALLER: u32 = 3 << 29;
+
+/// What became of a ROW_ACK between two STATUS.
+pub(super) struct Acknowledged {
+    /// The board's counters behind it.
+    pub(super) status: Status,
+    /// The packets that these count, and that they must count by those in front of it.
+    packets: [u32; 2],
+    /// Whether each STATUS was asked for and answered once.
+    once: bool,
+}
+
+impl Acknowledged {
+    /// Whether something came besides the second STATUS.
+    fn has_come(&self) -> bool {
+        let [counted, right] = self.packets;
+        counted >= right
+    }
+
+    /// Whether that was certainly the ROW_ACK, not a copy of the first STATUS in place of it.
+    pub(super) fn has_surely_come(&self) -> bool {
+        let [counted, right] = self.packets;
+        self.once && counted == right
+    }
+}
 
 impl Rules<'_, '_> {
     /// After a RESET no row is inside, so the window must be as far ahead as there are input banks.
@@ -37,16 +62,30 @@ impl Rules<'_, '_> {
     pub(super) fn ack_beyond(&mut self) -> Result<(), End> {
         self.drop_rows()?;
         let (right, beyond) = (self.run.board.acknowledged(), self.run.board.credit());
+        let (rule, mut packets) = (Some(Rule::Banks), [0; 2]);
         for _ in 0..TRIES {
-            self.run.board.acknowledge_alone(beyond);
-            let status = self.status()?;
-            equal(Some(Rule::Banks), &status, &[(Counter::NextRowOut, right)])?;
-            if self.run.board.had_each_packet_once(&status) {
+            let acknowledged = self.acknowledge_alone(beyond)?;
+            equal(rule, &acknowledged.status, &[(Counter::NextRowOut, right)])?;
+            if acknowledged.has_come() {
                 self.right += 1;
-                break;
+                return self.drop_rows();
             }
+            packets = acknowledged.packets;
         }
-        self.drop_rows()
+        let [counted, right] = packets;
+        Err(doubted(counter_wrong(rule, Counter::Packets, counted, right), Doubt::AnswerLost {}))
+    }
+
+    /// Acknowledges all rows before `row_sequence` by a ROW_ACK, which nothing answers, between two STATUS.
+    pub(super) fn acknowledge_alone(&mut self, row_sequence: u32) -> Result<Acknowledged, End> {
+        let Tally { packets_out, strays, .. } = self.run.board.tally();
+        let before = self.status()?;
+        self.run.board.acknowledge_alone(row_sequence);
+        let status = self.status()?;
+        let tally = self.run.board.tally();
+        let once = tally.packets_out - packets_out == 3 && tally.strays == strays;
+        let packets = [status.packets, before.packets.saturating_add(2)];
+        Ok(Acknowledged { status, packets, once })
     }
 
     /// After a RESET the board must give credit for as many rows as it has input banks. It gave it for `rows` in its answer to
