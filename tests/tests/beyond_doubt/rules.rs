@@ -225,6 +225,8 @@ fn a_board_that_took_a_row_and_says_that_none_is_inside_is_told_of() {
         assert_eq!(report.verdict(), verdict, "{}", report.headline());
         let told = "0 rows inside the core; the right number is 1";
         assert!(report.headline().contains(told), "{}", report.headline());
+        let is_doubted = matches!(report.finding, Finding::WrongOverDoubtfulLink { .. });
+        assert_eq!(is_doubted, verdict == Verdict::Error, "{}", report.headline());
     }
 }
 

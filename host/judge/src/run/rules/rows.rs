@@ -15,7 +15,6 @@ use crate::result::{CheckName, Counter, Doubt, Rule};
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::{During, End};
 use crate::tables::Generation;
-use crate::verdict::Cause;
 
 /// The generation with which rows are made.
 pub(super) const GENERATION: u8 = 0x96;
@@ -209,7 +208,7 @@ impl Rules<'_, '_> {
         if self.says_entered(place)? {
             return Err(End::failed(CheckName::Rules, finding));
         }
-        Err(End::error(CheckName::Rules, Cause::Station, finding))
+        Err(doubted(finding, Doubt::AnswerLost {}))
     }
 
     /// With row 0 inside, tries rows other than row 1, and everything that must wait until row 0 has left.
