@@ -132,6 +132,8 @@ fn a_board_that_does_not_send_a_row_again_fails() {
         packet.is(Kind::RowIn) && came.contains(&number) && samples.iter().all(|&byte| byte == 0)
     });
     assert_eq!(broken(&report).0, Rule::Banks);
+    // Of 8 tries each the first one asks, and then only waits.
+    assert_eq!(report.link.retries, 7 + 7);
 }
 
 /// The row that fills the last bank is not heard until it is asked for again, which the host does by sending black samples. No

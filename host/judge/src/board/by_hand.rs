@@ -261,6 +261,9 @@ impl Board {
     ) -> Result<CameAgain, BoardError> {
         let (attempts, place) = (Step::Row.deadline().attempts, row.0);
         for attempt in 0..attempts {
+            if attempt > 0 {
+                self.conversation.count_retry()?;
+            }
             let asked = if attempt > 0 { 2 } else { repeats.min(1).into() };
             for (place, samples) in iter::once(row).chain(after).take(asked) {
                 self.conversation.queue_row(place, samples);
@@ -282,7 +285,6 @@ impl Board {
                     None => {}
                 }
             }
-            self.conversation.count_retry()?;
         }
         Err(BoardError::RowMissing { place: *place, attempts })
     }
