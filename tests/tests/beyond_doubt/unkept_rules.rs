@@ -167,17 +167,34 @@ fn a_refused_row_leaves_the_window_where_it_is() {
     }
 }
 
-/// In its own session, by an empty reply and by a refusal without the flag that nobody looks at.
+/// What is made of an acknowledgement, and how that is told.
+type Answered = (fn(&Passing) -> Passing, Answer, &'static str);
+
+/// In its own session, by replies and by a refusal without the flag that nobody looks at. What a reply holds is told in hexadecimal.
 #[test]
 fn an_acknowledgement_is_not_answered() {
-    let answers_of: [fn(&Passing) -> Passing; 2] = [
-        |ack| Passing { header: Header { reply: true, ..ack.header }, payload: Vec::new() },
-        |ack| {
-            let (code, kind) = (RefusalCode::Kind, Kind::RowAck.code());
-            ack.saying(&Reply::Refusal(Refusal { code, kind, detail: 0 }))
-        },
+    let replied = |payload: &str| Answer::Replied { payload: payload.to_owned() };
+    let answers_of: [Answered; 3] = [
+        (
+            |ack| Passing { header: Header { reply: true, ..ack.header }, payload: Vec::new() },
+            replied(""),
+            "but it answered it with an empty reply (rule",
+        ),
+        (
+            |ack| Passing { header: Header { reply: true, ..ack.header }, payload: vec![0x5a, 0x0f] },
+            replied("5a0f"),
+            "but it answered with 5a0f (rule",
+        ),
+        (
+            |ack| {
+                let (code, kind) = (RefusalCode::Kind, Kind::RowAck.code());
+                ack.saying(&Reply::Refusal(Refusal { code, kind, detail: 0 }))
+            },
+            Answer::Refused { code: RefusalCode::Kind as u8, detail: 0 },
+            "but it refused it as `kind` (rule",
+        ),
     ];
-    for answer in answers_of {
+    for (answer, answered, told) in answers_of {
         let mut answers = Vec::new();
         let report = altering(move |toward, packet| {
             if toward == Toward::Board && packet.is(Kind::RowAck) {
@@ -185,7 +202,10 @@ fn an_acknowledgement_is_not_answered() {
             }
             if toward == Toward::Board { vec![packet] } else { answers.drain(..).chain([packet]).collect() }
         });
-        let is_told = matches!(report.finding, Finding::RuleBroken { rule: Rule::Unanswered, .. });
-        assert!(report.verdict() == Verdict::Fail && is_told, "{}", report.headline());
+        let Finding::RuleBroken { rule: Rule::Unanswered, found, .. } = &report.finding else {
+            panic!("{}", report.headline())
+        };
+        assert_eq!((report.verdict(), found), (Verdict::Fail, &answered), "{}", report.headline());
+        assert!(report.headline().contains(told), "{}", report.headline());
     }
 }

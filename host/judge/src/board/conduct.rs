@@ -13,7 +13,7 @@ const PACKETS: usize = 256;
 const ROWS: usize = 4096;
 
 /// The board broke the protocol in a way that no link can cause.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Misconduct {
     /// A row came twice, and the copies differ.
     CopyDiffers {
@@ -42,8 +42,8 @@ pub(crate) enum Misconduct {
     },
     /// A `ROW_ACK` was answered.
     AckAnswered {
-        /// The refusal; none for a reply.
-        refusal: Option<Refusal>,
+        /// By what.
+        said: Response,
     },
     /// A row left the board after a later one, by the board's own numbering of its packets.
     OutOfOrder {
@@ -94,8 +94,8 @@ pub(super) struct Conduct {
 
 impl Conduct {
     /// The first rule that the board broke.
-    pub(super) fn misconduct(&self) -> Option<Misconduct> {
-        self.misconduct
+    pub(super) fn misconduct(&self) -> Option<&Misconduct> {
+        self.misconduct.as_ref()
     }
 
     /// A lower bound on the ROW_OUT packets that the board has sent in this session, by its own numbering.
@@ -168,13 +168,13 @@ impl Conduct {
     /// Takes any packet, whatever session it names: no board may answer anybody's acknowledgement. Only the flag tells an empty answer
     /// from the host's own packet that a line echoes.
     pub(super) fn any_packet(&mut self, packet: &Packet<'_>) {
-        let refusal = match Reply::read(packet) {
-            Ok(Reply::Refusal(refusal)) if refusal.kind == Kind::RowAck.code() => Some(refusal),
-            _ => None,
+        let (ack, Header { kind, reply, .. }) = (Kind::RowAck.code(), packet.header);
+        let is_answer = match Reply::read(packet) {
+            Ok(Reply::Refusal(refusal)) => refusal.kind == ack,
+            _ => reply && kind == ack,
         };
-        let is_reply = packet.header.reply && packet.header.kind == Kind::RowAck.code();
-        if refusal.is_some() || is_reply {
-            self.note(Misconduct::AckAnswered { refusal });
+        if is_answer {
+            self.note(Misconduct::AckAnswered { said: Response::of(packet) });
         }
     }
 
@@ -282,7 +282,7 @@ mod tests {
     use super::*;
 
     fn found(rows: &[(u16, u32, u16, u8)]) -> Option<Misconduct> {
-        conduct(rows).misconduct()
+        conduct(rows).misconduct().cloned()
     }
 
     fn conduct(rows: &[(u16, u32, u16, u8)]) -> Conduct {
@@ -336,7 +336,7 @@ mod tests {
             conduct.row(0, &first, 9);
             conduct.row(1, &copy, 9);
             let differs = Misconduct::CopyDiffers { place: copy.place };
-            assert_eq!(conduct.misconduct(), Some(differs), "change {which}");
+            assert_eq!(conduct.misconduct(), Some(&differs), "change {which}");
         }
     }
 

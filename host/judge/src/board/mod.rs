@@ -161,7 +161,7 @@ impl Board {
 
     /// What the board did in this session that no link can have caused.
     #[must_use]
-    pub(crate) fn misconduct(&self) -> Option<Misconduct> {
+    pub(crate) fn misconduct(&self) -> Option<&Misconduct> {
         self.conversation.session.conduct.misconduct()
     }
 

@@ -31,12 +31,14 @@ pub(super) fn samples_differ((differences, samples): (usize, usize), rows: &Rows
 
 /// What the board must do, and what it did.
 pub(super) fn broken(rule: Rule, request: &str, right: &Answer, found: &Answer) -> String {
-    let did = if let (Answer::Refused { .. }, Answer::Replied { payload }) = (right, found)
-        && !payload.is_empty()
-    {
-        format!("accepted it and answered with {payload}")
-    } else {
-        did(found)
+    let did = match (right, found) {
+        (Answer::Refused { .. }, Answer::Replied { payload }) if !payload.is_empty() => {
+            format!("accepted it and answered with {payload}")
+        }
+        (Answer::Nothing {}, Answer::Replied { payload }) if payload.is_empty() => {
+            "answered it with an empty reply".to_owned()
+        }
+        _ => did(found),
     };
     format!("the board must {}, but it {did} (rule: {})", must(right, request), meaning(rule))
 }

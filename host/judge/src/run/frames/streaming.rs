@@ -4,7 +4,7 @@ use std::sync::mpsc::Receiver;
 
 use halfrow_model::TableSet;
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::{Refusal, RowPlace};
+use halfrow_protocol::message::RowPlace;
 
 use super::observations::Observations;
 use super::pauses::pauses;
@@ -14,6 +14,7 @@ use crate::board::{BoardError, MAX_LATENCY, Misconduct, row_blanking};
 use crate::result::{Answer, CheckName, Finding, FrameTiming, NumberedRow, PlacedRow, RepeatedRow, Rule};
 use crate::run::findings::{During, End};
 use crate::run::plan::{SENSOR_BLANKING, Segment, Timing};
+use crate::run::rules::answer;
 use crate::run::steps::Run;
 use crate::tables::datapath_of;
 
@@ -116,7 +117,7 @@ impl Run<'_> {
     fn misconduct(&self, check: CheckName) -> Option<End> {
         let misconduct = self.board.misconduct()?;
         let rules = check == CheckName::Rules;
-        let finding = match misconduct {
+        let finding = match *misconduct {
             Misconduct::CopyDiffers { place } => {
                 Finding::RowCopyDiffers(PlacedRow { row: place.row, frame: place.frame, rules })
             }
@@ -130,14 +131,11 @@ impl Run<'_> {
             Misconduct::RepeatsStand { place, repeats } => {
                 Finding::RowRepeatsStand(RepeatedRow { row: place.row, frame: place.frame, repeats, rules })
             }
-            Misconduct::AckAnswered { refusal } => Finding::RuleBroken {
+            Misconduct::AckAnswered { ref said } => Finding::RuleBroken {
                 rule: Rule::Unanswered,
                 request: Kind::RowAck.to_string(),
                 right: Answer::Nothing {},
-                found: refusal.map_or_else(
-                    || Answer::Replied { payload: "a reply".to_owned() },
-                    |Refusal { code, detail, .. }| Answer::Refused { code: code as u8, detail },
-                ),
+                found: answer(said),
             },
             Misconduct::OutOfOrder { place } => {
                 Finding::RowOutOfOrder(PlacedRow { row: place.row, frame: place.frame, rules })

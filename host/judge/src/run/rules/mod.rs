@@ -45,7 +45,8 @@ use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Lead, RowPart, R
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
-use quoted::{answer, answers};
+pub(super) use quoted::answer;
+use quoted::answers;
 use refusals::Refusals;
 use small::Small;
 pub(super) use trap::tallest_of_rules;

@@ -21,7 +21,7 @@ const OF_RECORD: [(usize, &str); 8] = [
 ];
 
 /// What is quoted of an answer by itself.
-pub(super) fn answer(said: &Response) -> Answer {
+pub(in crate::run) fn answer(said: &Response) -> Answer {
     match said {
         Response::Refused(refusal) => Answer::Refused { code: refusal.code as u8, detail: refusal.detail },
         Response::Replied(payload) => Answer::Replied { payload: beginning(payload) },
