@@ -7,7 +7,7 @@ use super::compared::Compared;
 use super::counts::equal;
 use super::rows::{FRAME, GENERATION, TRIES};
 use super::sessions::TIMES;
-use super::{Rules, answer, broken, counter_wrong, doubted, miscounted, of_rows, other_row};
+use super::{Rules, answer, broken, counter_wrong, doubted, miscounted, other_row, unanswered};
 use crate::board::{BoardError, NumberedFrame, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::findings::End;
@@ -126,7 +126,7 @@ impl Rules<'_, '_> {
         if self.says_it_sent_no_more(kept)? && self.is_silent_when_asked_again(kept, &place)? {
             return Err(broken(Rule::Banks, Kind::RowIn, right, Answer::Nothing {}));
         }
-        Err(of_rows(Rule::Banks, BoardError::RowMissing { place, attempts: 1 }))
+        Err(unanswered(Rule::Banks, Kind::RowIn, right))
     }
 
     /// Whether the row at `place` stays away when asked for again, although the board says that it had everything that
