@@ -6,6 +6,7 @@
 #[cfg(not(target_os = "linux"))]
 compile_error!("halfrow-link is for Linux alone; docs/portable.md says what works elsewhere");
 
+mod access;
 mod candidate;
 mod class;
 mod closed_link;
@@ -38,8 +39,8 @@ pub use line_errors::LineErrors;
 pub use open::{WRITTEN_FILE, check, fault, open, recording, recording_file, replay, written_file};
 pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
 pub(crate) use replay::ReplayLink;
+pub(crate) use serial::SerialLink;
 pub use serial::{Holder, SerialBoard, SerialError, holders};
-pub(crate) use serial::{SerialLink, how_to_get_access};
 pub use sysfs::UsbDevice;
 pub(crate) use sysfs::usb_device;
 pub use target::{BoardKind, Target, TargetError};

@@ -52,10 +52,6 @@ fn usb_device_in(class: &Path) -> Option<UsbDevice> {
     }
 }
 
-/// What to do about a device that is there but not given to this program.
-pub(crate) const HAVE_IT: &str =
-    "let the container or service that this program runs in have it, as docs/install.md says";
-
 /// Whether the kernel has the port `port`, which is not among this program's devices, as in a container to which it was not passed
 /// on.
 pub(crate) fn is_withheld(port: &Path) -> bool {

@@ -7,9 +7,10 @@ use nix::errno::Errno;
 use nix::unistd::{AccessFlags, access};
 
 use super::{Access, Found};
-use crate::sysfs::{HAVE_IT, is_withheld};
+use crate::access::{HAVE_IT, how_to_get_access};
+use crate::sysfs::is_withheld;
 use crate::target::BoardKind;
-use crate::{UsbDevice, holders, how_to_get_access, usb_device};
+use crate::{UsbDevice, holders, usb_device};
 
 /// Where udev keeps stable names, the better ones first: a serial number goes with the board, a path with the socket.
 const NAMES: [&str; 2] = ["/dev/serial/by-id", "/dev/serial/by-path"];

@@ -1,9 +1,9 @@
 //! FTDI's chips on USB, whether or not the system has made serial ports of them.
 
 use super::{Access, Found};
-use crate::sysfs::HAVE_IT;
+use crate::access::{HAVE_IT, how_to_get_access};
 use crate::target::BoardKind;
-use crate::{UsbBoard, how_to_get_access, usb_boards};
+use crate::{UsbBoard, usb_boards};
 
 /// The FTDI chips on the USB of this computer.
 pub(crate) fn find() -> Vec<Found> {

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use super::Holder;
 use super::holder::by;
 use crate::Class;
+use crate::access::HAVE_IT;
 use crate::ftdi::list;
-use crate::sysfs::HAVE_IT;
 
 /// A serial port that cannot be opened.
 #[derive(Debug, thiserror::Error)]

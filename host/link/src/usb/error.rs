@@ -3,9 +3,9 @@
 use super::find::UsbBoard;
 use super::transport::UsbFailure;
 use crate::Class;
+use crate::access::HAVE_IT;
 use crate::ftdi::list;
 use crate::serial::{Holder, by};
-use crate::sysfs::HAVE_IT;
 
 /// Why a board cannot be opened over USB.
 #[derive(Debug, thiserror::Error)]
@@ -50,13 +50,12 @@ pub enum UsbError {
         channels: u8,
     },
     /// This user may not open the USB device.
-    #[error(
-        "this user may not open the USB device {name}; install scripts/70-halfrow.rules as docs/boards.md says, and plug the \
-         board in again, or run as a user who may"
-    )]
+    #[error("this user may not open the USB device {name}; {remedy}")]
     NotPermitted {
         /// The chip's name.
         name: String,
+        /// How to get access.
+        remedy: String,
     },
     /// The USB device is plugged in, but this program is not given it, as in a container to which it was not passed on.
     #[error("the USB device {name} is plugged in, but this program is not given it; {}", HAVE_IT)]

@@ -31,6 +31,7 @@ use transport::{Libusb, Transport};
 
 use super::serial::{Holder, keepers};
 use super::{HEED, Link, LinkError, bytes_per_second};
+use crate::access::how_to_get_access;
 use crate::target::Target;
 use crate::{LineErrors, OpenError};
 
@@ -114,22 +115,30 @@ fn claim(found: &FtdiDevice, channel: Channel, name: &str) -> Result<Libusb, Usb
             return Err(UsbError::Busy { what: port.display().to_string(), holders });
         }
     }
-    let failed = |error| match error {
-        rusb::Error::Access => UsbError::NotPermitted { name: name.to_owned() },
-        rusb::Error::Busy => UsbError::Busy {
-            what: format!("channel {} of {name}", channel.letter()),
-            holders: keepers(&found.board.file),
-        },
-        other => {
-            let source = transport::failure(other);
-            UsbError::Transfer { name: name.to_owned(), doing: "opening the device", source }
-        }
-    };
+    let failed = |error| failed(error, &found.board, channel, name);
     let handle = found.device.open().map_err(|error| {
         let is_withheld = is_withheld(error, &sysfs(&found.board.place));
         if is_withheld { UsbError::NotGiven { name: name.to_owned() } } else { failed(error) }
     })?;
     Libusb::claim(handle, channel.0, found.chip.endpoints(channel)).map_err(failed)
+}
+
+/// What libusb's `error` says of a channel of `board` that cannot be claimed.
+fn failed(error: rusb::Error, board: &UsbBoard, channel: Channel, name: &str) -> UsbError {
+    match error {
+        rusb::Error::Access => {
+            let remedy = how_to_get_access(&board.file, Some(&board.device));
+            UsbError::NotPermitted { name: name.to_owned(), remedy }
+        }
+        rusb::Error::Busy => UsbError::Busy {
+            what: format!("channel {} of {name}", channel.letter()),
+            holders: keepers(&board.file),
+        },
+        other => {
+            let source = transport::failure(other);
+            UsbError::Transfer { name: name.to_owned(), doing: "opening the device", source }
+        }
+    }
 }
 
 /// The options of a target. Its address, if it has one, is a name; an empty one was forgotten.
@@ -212,10 +221,14 @@ impl Link for UsbLink {
 
 #[cfg(test)]
 mod tests {
+    use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, chown};
     use std::sync::Mutex;
+
+    use nix::unistd::{Gid, Group};
 
     use super::ftdi::tests::Noting;
     use super::*;
+    use crate::UsbDevice;
 
     /// As behind a hub of USB 1.1 (libftdi's ftdi.c, _ftdi_determine_max_packet_size): 62 bytes of data in each packet of 64.
     #[test]
@@ -232,6 +245,36 @@ mod tests {
         assert_eq!(came, [&[7; 62][..], &[8]].concat());
         // At most 19 such packets fit into a frame of 1 ms (USB 2.0, table 5-9).
         assert!(link.bytes_per_second().unwrap() < 19.0 * 62.0 * 1e3);
+    }
+
+    /// As behind the rules, which give devices to a group.
+    #[test]
+    fn who_may_not_open_a_device_of_a_group_is_told_to_join_it() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        fs::set_permissions(file.path(), fs::Permissions::from_mode(0o660)).unwrap();
+        // Only root may; anybody else's files are of a group of their own.
+        let _ = chown(file.path(), None, Some(1));
+        let group = Gid::from_raw(fs::metadata(file.path()).unwrap().gid());
+        let group = Group::from_gid(group).unwrap().unwrap().name;
+        let device = UsbDevice {
+            vendor_id: 0x0403,
+            product_id: 0x6010,
+            device_version: 0x0700,
+            manufacturer: None,
+            product: None,
+            serial: None,
+            interface: Some(1),
+        };
+        let board = UsbBoard {
+            device,
+            chip: "FT2232H",
+            file: file.path().to_owned(),
+            place: "1-9".to_owned(),
+            is_permitted: false,
+            is_given: true,
+        };
+        let told = failed(rusb::Error::Access, &board, Channel(1), "usb").to_string();
+        assert!(told.contains(&format!("`sudo usermod -aG {group} $USER`")), "{told}");
     }
 
     #[test]

@@ -103,7 +103,7 @@ codes! {
         NotFound [wanted, found] => "usb-board-missing",
         Several (found) => "usb-several-boards",
         NoChannel [chip, name, channel, channels] => "usb-channel-missing",
-        NotPermitted [name] => "usb-not-permitted",
+        NotPermitted [name, remedy] => "usb-not-permitted",
         NotGiven [name] => "usb-not-given",
         Busy [what, holders] => "usb-in-use",
         OtherMode [name, channel, found, wanted] => "usb-channel-in-other-mode",

@@ -1,0 +1,62 @@
+//! What to do about a device that this user may not open, or that this program is not given.
+
+use std::fs;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::Path;
+
+use crate::UsbDevice;
+use crate::ftdi;
+
+/// What to do about a device that is there but not given to this program.
+pub(crate) const HAVE_IT: &str =
+    "let the container or service that this program runs in have it, as docs/install.md says";
+
+/// What to do about a device file that this user may not open, that of a port or of the USB device `usb` itself.
+#[must_use]
+pub(crate) fn how_to_get_access(file: &Path, usb: Option<&UsbDevice>) -> String {
+    let group = fs::metadata(file).ok().filter(|file| file.mode() & 0o060 == 0o060).map(|file| file.gid());
+    let group = group.filter(|&id| id != 0);
+    let group = group.and_then(|id| nix::unistd::Group::from_gid(id.into()).ok().flatten());
+    let join = group
+        .map(|group| format!("join its group with `sudo usermod -aG {} $USER` and log in again", group.name));
+    // The rules name no other devices.
+    let has_rule =
+        |usb: &&UsbDevice| usb.vendor_id == ftdi::VENDOR && ftdi::PRODUCTS.contains(&usb.product_id);
+    let install =
+        usb.filter(has_rule).map(|_| "install scripts/70-halfrow.rules as docs/boards.md says".to_owned());
+    let ways: Vec<String> = join.into_iter().chain(install).collect();
+    if ways.is_empty() { "ask root for read and write access to it".to_owned() } else { ways.join(", or ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    use super::*;
+
+    #[test]
+    fn the_rules_are_recommended_only_for_the_chips_that_they_name() {
+        let usb = |vendor_id, product_id| UsbDevice {
+            vendor_id,
+            product_id,
+            device_version: 0,
+            manufacturer: None,
+            product: None,
+            serial: None,
+            interface: None,
+        };
+        let file = tempfile::NamedTempFile::new().unwrap();
+        fs::set_permissions(file.path(), fs::Permissions::from_mode(0o600)).unwrap();
+        let rules = "install scripts/70-halfrow.rules as docs/boards.md says";
+        for (device, remedy) in [
+            (Some(usb(0x0403, 0x6001)), rules),
+            (Some(usb(0x0403, 0x6010)), rules),
+            // A CP2102, a chip of FTDI's of another kind, and a port without USB.
+            (Some(usb(0x10c4, 0xea60)), "ask root for read and write access to it"),
+            (Some(usb(0x0403, 0x6041)), "ask root for read and write access to it"),
+            (None, "ask root for read and write access to it"),
+        ] {
+            assert_eq!(how_to_get_access(file.path(), device.as_ref()), remedy);
+        }
+    }
+}
