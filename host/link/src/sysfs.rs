@@ -1,9 +1,9 @@
-//! What the kernel knows about the USB device behind a serial port.
+//! What the kernel knows about USB devices, and about ports that are not in /dev.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A USB device that a serial port belongs to.
+/// A USB device: the one that a serial port belongs to, or a chip that has no port.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct UsbDevice {
     /// Vendor id.
@@ -18,7 +18,7 @@ pub struct UsbDevice {
     pub product: Option<String>,
     /// The serial number.
     pub serial: Option<String>,
-    /// The USB interface of this port.
+    /// The USB interface of that port; of a chip, the one to which boards connect their FPGA.
     pub interface: Option<u8>,
 }
 

@@ -21,8 +21,10 @@ pub enum UsbError {
          that it is given the device"
     )]
     NoneFound,
-    /// USB devices are plugged in, but none of them has a chip that this program drives over USB.
-    #[error("no FT2232H or FT232H is plugged in; if the board is behind another chip, choose that: {}", targets(.0))]
+    /// Only FTDI chips of full speed are plugged in, none of which is chosen unless the target names it.
+    #[error(
+        "no FT2232H, FT4232H or FT232H is plugged in; if the board is behind another chip, choose that: {}", targets(.0)
+    )]
     OthersOnly(Vec<UsbBoard>),
     /// No FTDI chip of this name is plugged in.
     #[error("no FTDI chip is called `{wanted}`; {}", there_are(.found))]
