@@ -54,12 +54,12 @@ fn usb_device_in(class: &Path) -> Option<UsbDevice> {
 
 /// Whether the kernel has the port `port`, which is not among this program's devices, as in a container to which it was not passed
 /// on.
-pub(crate) fn is_withheld(port: &Path) -> bool {
-    is_withheld_in(Path::new("/dev"), Path::new("/sys/class/tty"), port)
+pub(crate) fn is_without_file(port: &Path) -> bool {
+    is_without_file_in(Path::new("/dev"), Path::new("/sys/class/tty"), port)
 }
 
 /// The same, given the folders of devices and of ports.
-fn is_withheld_in(devices: &Path, class: &Path, port: &Path) -> bool {
+fn is_without_file_in(devices: &Path, class: &Path, port: &Path) -> bool {
     let name = port.file_name().filter(|_| port.parent() == Some(devices) && !port.exists());
     name.is_some_and(|name| class.join(name).exists())
 }
@@ -110,10 +110,10 @@ mod tests {
             fs::create_dir_all(class.join(port)).unwrap();
         }
         fs::write(devices.join("ttyUSB0"), "").unwrap();
-        let is_withheld = |port: &str| is_withheld_in(&devices, &class, &devices.join(port));
-        assert!(is_withheld("ttyUSB1"));
-        assert!(!is_withheld("ttyUSB0") && !is_withheld("ttyUSB2"));
-        assert!(!is_withheld_in(&devices, &class, Path::new("ttyUSB1")));
+        let is_without_file = |port: &str| is_without_file_in(&devices, &class, &devices.join(port));
+        assert!(is_without_file("ttyUSB1"));
+        assert!(!is_without_file("ttyUSB0") && !is_without_file("ttyUSB2"));
+        assert!(!is_without_file_in(&devices, &class, Path::new("ttyUSB1")));
     }
 
     #[test]

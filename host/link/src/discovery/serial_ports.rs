@@ -8,7 +8,7 @@ use nix::unistd::{AccessFlags, access};
 
 use super::{Access, Found};
 use crate::access::{HAVE_IT, how_to_get_access};
-use crate::sysfs::is_withheld;
+use crate::sysfs::is_without_file;
 use crate::target::BoardKind;
 use crate::{UsbDevice, holders, usb_device};
 
@@ -47,7 +47,7 @@ pub(super) fn look_at(path: &Path) -> Found {
 }
 
 fn access_to(path: &Path, usb: Option<&UsbDevice>) -> Access {
-    if !path.exists() && !is_withheld(path) {
+    if !path.exists() && !is_without_file(path) {
         return Access::Missing;
     }
     match access(path, AccessFlags::R_OK | AccessFlags::W_OK) {

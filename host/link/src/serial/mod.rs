@@ -18,7 +18,7 @@ use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort, TTYPort};
 
 use super::access::how_to_get_access;
 use super::descriptor::{Gone, Pump, never_block};
-use super::sysfs::{is_withheld, usb_device};
+use super::sysfs::{is_without_file, usb_device};
 use super::{HEED, Link, LinkError, OpenError, bytes_per_second};
 use crate::ftdi::{self, Speed};
 use crate::target::Target;
@@ -212,7 +212,7 @@ fn check_taken_rate(port: &TTYPort, path: &Path, baud: u32) -> Result<(), Serial
 fn failed(path: &Path, error: io::Error) -> SerialError {
     let path = path.to_owned();
     match error.kind() {
-        io::ErrorKind::NotFound if is_withheld(&path) => SerialError::NotGiven(path),
+        io::ErrorKind::NotFound if is_without_file(&path) => SerialError::NotGiven(path),
         io::ErrorKind::NotFound => SerialError::Missing(path),
         // Such a path leads nowhere, whatever is plugged in.
         io::ErrorKind::NotADirectory => SerialError::NotAPort(path),

@@ -103,11 +103,11 @@ fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
     let chip = (descriptor.vendor_id() == VENDOR).then(|| Chip::of(descriptor.product_id(), version))??;
     let place = place(&device);
     let opened = device.open();
-    let is_given = !opened.as_ref().is_err_and(|&error| is_withheld(error, &sysfs(&place)));
+    let is_given = !opened.as_ref().is_err_and(|&error| means_withheld(error, &folder_of(&place)));
     let handle = opened.ok();
     // Linux gives the strings even to users who may not open the device.
     let string = |file: &str, index: Option<u8>| {
-        let told = fs::read_to_string(sysfs(&place).join(file)).ok().map(|text| text.trim().to_owned());
+        let told = fs::read_to_string(folder_of(&place).join(file)).ok().map(|text| text.trim().to_owned());
         let asked = || handle.as_ref()?.read_string_descriptor_ascii(index?).ok();
         told.or_else(asked).filter(|text| !text.is_empty())
     };
@@ -134,7 +134,7 @@ fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
 /// Whether the device of this folder in sysfs, which `error` kept from being opened, is there and only kept from this program.
 /// libusb takes a file that is not in /dev for NO_DEVICE, and what a control group says, EPERM, for IO (linux_usbfs.c,
 /// get_usbfs_fd).
-pub(super) fn is_withheld(error: rusb::Error, folder: &Path) -> bool {
+pub(super) fn means_withheld(error: rusb::Error, folder: &Path) -> bool {
     matches!(error, rusb::Error::NoDevice | rusb::Error::Io) && folder.exists()
 }
 
@@ -145,13 +145,13 @@ fn bcd(Version(major, minor, sub_minor): Version) -> u16 {
 }
 
 /// Linux's folder for the device at `place`.
-pub(super) fn sysfs(place: &str) -> PathBuf {
+pub(super) fn folder_of(place: &str) -> PathBuf {
     PathBuf::from("/sys/bus/usb/devices").join(place)
 }
 
 /// Linux's folder for the interface of a channel.
 pub(super) fn interface(place: &str, channel: Channel) -> PathBuf {
-    sysfs(place).join(format!("{place}:1.{}", channel.0))
+    folder_of(place).join(format!("{place}:1.{}", channel.0))
 }
 
 /// Whether a program has claimed the interface of this folder, from which the system's driver is detached as long.
@@ -229,10 +229,10 @@ mod tests {
     fn a_device_that_is_kept_from_this_program_is_not_said_to_be_gone() {
         let folder = tempfile::tempdir().unwrap();
         for error in [rusb::Error::NoDevice, rusb::Error::Io] {
-            assert!(is_withheld(error, folder.path()));
-            assert!(!is_withheld(error, &folder.path().join("1-9")));
+            assert!(means_withheld(error, folder.path()));
+            assert!(!means_withheld(error, &folder.path().join("1-9")));
         }
-        assert!(!is_withheld(rusb::Error::Access, folder.path()));
+        assert!(!means_withheld(rusb::Error::Access, folder.path()));
     }
 
     /// As the links of sysfs look while libusb has claimed an interface, and while the serial driver has it.

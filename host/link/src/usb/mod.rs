@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use chip::{Channel, Chip, FULL_SPEED_PACKET};
-use find::{FtdiDevice, choose, interface, is_withheld, sysfs};
+use find::{FtdiDevice, choose, folder_of, interface, means_withheld};
 use ftdi::{Ftdi, Ready};
 use options::UsbOptions;
 use packets::strip;
@@ -117,7 +117,7 @@ fn claim(found: &FtdiDevice, channel: Channel, name: &str) -> Result<Libusb, Usb
     }
     let failed = |error| failed(error, &found.board, channel, name);
     let handle = found.device.open().map_err(|error| {
-        let is_withheld = is_withheld(error, &sysfs(&found.board.place));
+        let is_withheld = means_withheld(error, &folder_of(&found.board.place));
         if is_withheld { UsbError::NotGiven { name: name.to_owned() } } else { failed(error) }
     })?;
     Libusb::claim(handle, channel.0, found.chip.endpoints(channel)).map_err(failed)

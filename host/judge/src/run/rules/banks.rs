@@ -1,5 +1,7 @@
 //! Rows that a board keeps in its output banks until the host has them: as many as there are banks, no more (WIRE.md, 4).
 
+use std::mem;
+
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{RefusalCode, RowPlace};
 
@@ -28,7 +30,7 @@ struct FilledBanks {
     right: Compared,
     /// The board's counters before them, the ROW_OUT packets that had come by then, and the retries.
     before: Status,
-    came: u32,
+    came_before: u32,
     retries: u64,
     /// How often rows were asked for again that had come, and how often rows were sent that need no answer.
     asked: u32,
@@ -50,16 +52,16 @@ impl FilledBanks {
         }
     }
 
-    /// The frames of `rows` rows from row `from` on, which is the first of its frame.
-    fn frames(&self, from: u32, rows: u32) -> impl Iterator<Item = u16> + use<> {
-        let last = (from + rows - 1) / self.height;
-        (from / self.height..=last).map(|frame| FRAME.wrapping_add(frame as u16))
-    }
-
     /// Samples for another copy of a row that the board has; it must not use them.
     fn black(&self) -> Vec<u16> {
         vec![0; self.width.into()]
     }
+}
+
+/// The frames, of `height` rows each, of `rows` rows from row `from` on, which is the first of its frame.
+fn frames(height: u32, from: u32, rows: u32) -> impl Iterator<Item = u16> {
+    let last = (from + rows - 1) / height;
+    (from / height..=last).map(|frame| FRAME.wrapping_add(frame as u16))
 }
 
 impl Rules<'_, '_> {
@@ -89,34 +91,30 @@ impl Rules<'_, '_> {
         let height = height.unwrap_or(1);
         self.configure(height as usize)?;
         let (first, width) = (self.run.board.acknowledged(), self.small.geometry.width() as u16);
-        let before = self.status()?;
-        let (came, retries) = (self.run.board.rows_came(), self.run.board.tally().retries);
-        let (right, asked, unneeded, is_exact) = (Compared::default(), 0, 0, true);
+        let made = self.small.made(0, self.height, GENERATION);
         let mut kept = FilledBanks {
             first,
             banks,
             height,
             width,
-            right,
-            before,
-            came,
-            retries,
-            asked,
-            unneeded,
-            is_exact,
+            right: Compared::default().with(&self.small, frames(height, 0, banks), &made),
+            before: self.status()?,
+            came_before: self.run.board.rows_came(),
+            retries: self.run.board.tally().retries,
+            asked: 0,
+            unneeded: 0,
+            is_exact: true,
         };
-        let made = self.small.made(0, self.height, GENERATION);
-        let mut right = Compared::default().with(&self.small, kept.frames(0, banks), &made);
         self.run.board.acknowledge_to(Some(first));
-        let streamed = self.stream(&mut right);
-        self.came(&kept, streamed)?;
-        self.judge_rows(Rule::Banks, &right)?;
-        kept.right = right.with(&self.small, kept.frames(banks, 1), &made);
+        let streamed = self.stream(&mut kept.right);
+        self.end_if_missing(&kept, streamed)?;
+        self.judge_rows(Rule::Banks, &kept.right)?;
+        kept.right = mem::take(&mut kept.right).with(&self.small, frames(height, banks, 1), &made);
         Ok(kept)
     }
 
     /// The rows that `came`. If one is missing, ends with the board's silence if that is certain, otherwise with doubt.
-    fn came<T>(&mut self, kept: &FilledBanks, came: Result<T, BoardError>) -> Result<T, End> {
+    fn end_if_missing<T>(&mut self, kept: &FilledBanks, came: Result<T, BoardError>) -> Result<T, End> {
         let place = match came {
             Ok(came) => return Ok(came),
             Err(BoardError::RowMissing { place, .. }) => place,
@@ -144,7 +142,7 @@ impl Rules<'_, '_> {
     fn says_it_sent_no_more(&mut self, kept: &FilledBanks) -> Result<bool, End> {
         let status = self.status()?;
         let sent = |status: &Status| Counter::RowsNumbered.in_status(status);
-        let came = self.run.board.rows_came() - kept.came;
+        let came = self.run.board.rows_came() - kept.came_before;
         let is_all = sent(&status) == sent(&kept.before).saturating_add(came);
         Ok(is_all && self.run.board.had_each_packet_once(&status))
     }
@@ -233,7 +231,7 @@ impl Rules<'_, '_> {
     fn comes_again(&mut self, kept: &mut FilledBanks, row: u32, repeats: u16) -> Result<(), End> {
         let (place, black) = (kept.place(row), kept.black());
         let came = self.run.board.again((&place, &black), None, repeats);
-        let came = self.came(kept, came)?;
+        let came = self.end_if_missing(kept, came)?;
         kept.asked += 1;
         let is_counted = came.repeats == repeats || !self.is_calm(kept.retries)?;
         let row = came.row(&place);
@@ -284,12 +282,12 @@ impl Rules<'_, '_> {
 
     /// Acknowledges all rows that came. Those that waited must come back right.
     fn release(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
-        let came = self.run.board.acknowledged();
+        let next_row = self.run.board.acknowledged();
         self.run.board.acknowledge_to(None);
-        self.run.board.acknowledge_alone(came);
+        self.run.board.acknowledge_alone(next_row);
         let made = self.small.made(0, self.height, GENERATION);
-        let (from, to) = (came - kept.first, kept.banks + WAITING);
-        let compared = Compared::default().with(&self.small, kept.frames(from, to - from), &made);
+        let (from, to) = (next_row - kept.first, kept.banks + WAITING);
+        let compared = Compared::default().with(&self.small, frames(kept.height, from, to - from), &made);
         self.frames(Rule::Banks, compared)
     }
 
