@@ -1,11 +1,43 @@
-//! What to do about a device that this user may not open, or that this program is not given.
+//! Whether a device file may be opened, without opening it, and what to do if not.
 
 use std::fs;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 
+use nix::errno::Errno;
+use nix::unistd::{AccessFlags, access};
+
 use crate::UsbDevice;
 use crate::ftdi;
+
+/// Who keeps a device file from being opened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// This user may not open it.
+    FromUser,
+    /// This program is not given it, as in a container to which it was not passed on.
+    FromProgram,
+}
+
+impl Kept {
+    /// Whether `file`, that of a device that is there, is kept from being opened. Opening it could wake the device, or reset a board.
+    pub(crate) fn is(file: &Path) -> Option<Self> {
+        match access(file, AccessFlags::R_OK | AccessFlags::W_OK) {
+            Ok(()) => None,
+            // Only the control group of a container or service says EPERM.
+            Err(Errno::ENOENT | Errno::EPERM) => Some(Self::FromProgram),
+            Err(_) => Some(Self::FromUser),
+        }
+    }
+
+    /// What to do about `file`, that of a port or of the USB device `usb` itself.
+    pub(crate) fn remedy(self, file: &Path, usb: Option<&UsbDevice>) -> String {
+        match self {
+            Self::FromUser => how_to_get_access(file, usb),
+            Self::FromProgram => HAVE_IT.to_owned(),
+        }
+    }
+}
 
 /// What to do about a device that is there but not given to this program.
 pub(crate) const HAVE_IT: &str =
@@ -33,6 +65,19 @@ mod tests {
     use std::os::unix::fs::PermissionsExt as _;
 
     use super::*;
+
+    /// Root may open any file.
+    #[test]
+    fn a_file_is_not_opened_to_find_out_who_may() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert_eq!(Kept::is(&pipe), Some(Kept::FromProgram));
+        assert_eq!(Kept::FromProgram.remedy(&pipe, None), HAVE_IT);
+        // Whoever opens a pipe to read waits until somebody writes.
+        nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::from_bits_truncate(0o400)).unwrap();
+        let kept = if nix::unistd::geteuid().is_root() { None } else { Some(Kept::FromUser) };
+        assert_eq!(Kept::is(&pipe), kept);
+    }
 
     #[test]
     fn the_rules_are_recommended_only_for_the_chips_that_they_name() {

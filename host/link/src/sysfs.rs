@@ -64,7 +64,8 @@ fn is_without_file_in(devices: &Path, class: &Path, port: &Path) -> bool {
     name.is_some_and(|name| class.join(name).exists())
 }
 
-fn text(folder: &Path, file: &str) -> Option<String> {
+/// What a file of a folder says; none if it is empty or not there.
+pub(crate) fn text(folder: &Path, file: &str) -> Option<String> {
     let text = fs::read_to_string(folder.join(file)).ok()?;
     Some(text.trim().to_owned()).filter(|text| !text.is_empty())
 }

@@ -3,11 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use nix::errno::Errno;
-use nix::unistd::{AccessFlags, access};
-
 use super::{Access, Found};
-use crate::access::{HAVE_IT, how_to_get_access};
+use crate::access::Kept;
 use crate::sysfs::is_without_file;
 use crate::target::BoardKind;
 use crate::{UsbDevice, holders, usb_device};
@@ -50,11 +47,8 @@ fn access_to(path: &Path, usb: Option<&UsbDevice>) -> Access {
     if !path.exists() && !is_without_file(path) {
         return Access::Missing;
     }
-    match access(path, AccessFlags::R_OK | AccessFlags::W_OK) {
-        Ok(()) => {}
-        // Only the control group of a container or service says EPERM.
-        Err(Errno::ENOENT | Errno::EPERM) => return Access::Denied { remedy: HAVE_IT.to_owned() },
-        Err(_) => return Access::Denied { remedy: how_to_get_access(path, usb) },
+    if let Some(kept) = Kept::is(path) {
+        return Access::Denied { remedy: kept.remedy(path, usb) };
     }
     let holders = holders(path);
     if holders.is_empty() { Access::Free } else { Access::Busy { holders } }

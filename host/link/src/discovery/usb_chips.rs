@@ -1,7 +1,7 @@
 //! FTDI's chips on USB, whether or not the system has made serial ports of them.
 
 use super::{Access, Found};
-use crate::access::{HAVE_IT, how_to_get_access};
+use crate::access::Kept;
 use crate::target::BoardKind;
 use crate::{UsbBoard, usb_boards};
 
@@ -28,11 +28,8 @@ fn look_at(board: &UsbBoard, target: String) -> Found {
 }
 
 fn access_to(board: &UsbBoard) -> Access {
-    if !board.is_given {
-        return Access::Denied { remedy: HAVE_IT.to_owned() };
-    }
-    if !board.is_permitted {
-        return Access::Denied { remedy: how_to_get_access(&board.file, Some(&board.device)) };
+    if let Some(kept) = Kept::is(&board.file) {
+        return Access::Denied { remedy: kept.remedy(&board.file, Some(&board.device)) };
     }
     board.holders().map_or(Access::Free, |holders| Access::Busy { holders })
 }

@@ -12,7 +12,7 @@ use super::error::UsbError;
 use super::serial_ports;
 use super::transport::UsbFailure;
 use crate::ftdi::VENDOR;
-use crate::sysfs::UsbDevice;
+use crate::sysfs::{UsbDevice, text};
 use crate::{Holder, holders};
 
 /// An FTDI chip that could belong to a board.
@@ -26,10 +26,6 @@ pub struct UsbBoard {
     pub file: PathBuf,
     /// Where it is plugged in, such as `1-2.3`: Linux's name, which stays the same for a socket.
     pub place: String,
-    /// Whether this user may open it.
-    pub is_permitted: bool,
-    /// Whether this program is given it at all; in a container it may not be.
-    pub is_given: bool,
 }
 
 impl UsbBoard {
@@ -102,18 +98,9 @@ fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
     let version = bcd(descriptor.device_version());
     let chip = (descriptor.vendor_id() == VENDOR).then(|| Chip::of(descriptor.product_id(), version))??;
     let place = place(&device);
-    let opened = device.open();
-    let is_given = !opened.as_ref().is_err_and(|&error| means_withheld(error, &folder_of(&place)));
-    let handle = opened.ok();
     // Linux gives the strings even to users who may not open the device.
-    let string = |file: &str, index: Option<u8>| {
-        let told = fs::read_to_string(folder_of(&place).join(file)).ok().map(|text| text.trim().to_owned());
-        let asked = || handle.as_ref()?.read_string_descriptor_ascii(index?).ok();
-        told.or_else(asked).filter(|text| !text.is_empty())
-    };
-    let serial = string("serial", descriptor.serial_number_string_index());
-    let product = string("product", descriptor.product_string_index());
-    let manufacturer = string("manufacturer", descriptor.manufacturer_string_index());
+    let string = |file: &str| text(&folder_of(&place), file);
+    let (serial, product, manufacturer) = (string("serial"), string("product"), string("manufacturer"));
     let (vendor_id, product_id) = (descriptor.vendor_id(), descriptor.product_id());
     let interface = Some(chip.usual_channel().0);
     let described = UsbDevice {
@@ -126,16 +113,8 @@ fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
         interface,
     };
     let file = PathBuf::from(format!("/dev/bus/usb/{:03}/{:03}", device.bus_number(), device.address()));
-    let (chip_name, is_permitted) = (chip.name(), handle.is_some());
-    let board = UsbBoard { device: described, chip: chip_name, place, file, is_permitted, is_given };
+    let board = UsbBoard { device: described, chip: chip.name(), place, file };
     Some(FtdiDevice { board, chip, device })
-}
-
-/// Whether the device of this folder in sysfs, which `error` kept from being opened, is there and only kept from this program.
-/// libusb takes a file that is not in /dev for NO_DEVICE, and what a control group says, EPERM, for IO (linux_usbfs.c,
-/// get_usbfs_fd).
-pub(super) fn means_withheld(error: rusb::Error, folder: &Path) -> bool {
-    matches!(error, rusb::Error::NoDevice | rusb::Error::Io) && folder.exists()
 }
 
 /// A version as in the descriptor: four decimal digits. The first two come as one number here.
@@ -210,8 +189,6 @@ mod tests {
             chip: "FT2232H",
             file: PathBuf::new(),
             place: place.to_owned(),
-            is_permitted: true,
-            is_given: true,
         };
         let serials = [Some("FT1"), Some("FT,1"), Some("FT,mode=fifo"), Some("twice"), Some("twice"), None];
         let all: Vec<_> =
@@ -222,17 +199,6 @@ mod tests {
             let target: Target = target.parse().unwrap();
             assert!(target.options.is_empty() && board.is_called(&target.address.unwrap()));
         }
-    }
-
-    /// A device that is unplugged leaves its folder with it.
-    #[test]
-    fn a_device_that_is_kept_from_this_program_is_not_said_to_be_gone() {
-        let folder = tempfile::tempdir().unwrap();
-        for error in [rusb::Error::NoDevice, rusb::Error::Io] {
-            assert!(means_withheld(error, folder.path()));
-            assert!(!means_withheld(error, &folder.path().join("1-9")));
-        }
-        assert!(!means_withheld(rusb::Error::Access, folder.path()));
     }
 
     /// As the links of sysfs look while libusb has claimed an interface, and while the serial driver has it.

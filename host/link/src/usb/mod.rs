@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use chip::{Channel, Chip, FULL_SPEED_PACKET};
-use find::{FtdiDevice, choose, folder_of, interface, means_withheld};
+use find::{FtdiDevice, choose, folder_of, interface};
 use ftdi::{Ftdi, Ready};
 use options::UsbOptions;
 use packets::strip;
@@ -31,7 +31,7 @@ use transport::{Libusb, Transport};
 
 use super::serial::{Holder, keepers};
 use super::{HEED, Link, LinkError, bytes_per_second};
-use crate::access::how_to_get_access;
+use crate::access::{Kept, how_to_get_access};
 use crate::target::Target;
 use crate::{LineErrors, OpenError};
 
@@ -117,8 +117,12 @@ fn claim(found: &FtdiDevice, channel: Channel, name: &str) -> Result<Libusb, Usb
     }
     let failed = |error| failed(error, &found.board, channel, name);
     let handle = found.device.open().map_err(|error| {
-        let is_withheld = means_withheld(error, &folder_of(&found.board.place));
-        if is_withheld { UsbError::NotGiven { name: name.to_owned() } } else { failed(error) }
+        // A device that is unplugged leaves its folder with it.
+        let is_there = || folder_of(&found.board.place).exists();
+        match Kept::is(&found.board.file) {
+            Some(Kept::FromProgram) if is_there() => UsbError::NotGiven { name: name.to_owned() },
+            _ => failed(error),
+        }
     })?;
     Libusb::claim(handle, channel.0, found.chip.endpoints(channel)).map_err(failed)
 }
@@ -265,14 +269,8 @@ mod tests {
             serial: None,
             interface: Some(1),
         };
-        let board = UsbBoard {
-            device,
-            chip: "FT2232H",
-            file: file.path().to_owned(),
-            place: "1-9".to_owned(),
-            is_permitted: false,
-            is_given: true,
-        };
+        let board =
+            UsbBoard { device, chip: "FT2232H", file: file.path().to_owned(), place: "1-9".to_owned() };
         let told = failed(rusb::Error::Access, &board, Channel(1), "usb").to_string();
         assert!(told.contains(&format!("`sudo usermod -aG {group} $USER`")), "{told}");
     }
