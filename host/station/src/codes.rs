@@ -83,6 +83,7 @@ codes::codes! {
     StoreError {
         InUse [folder] => "store-in-use",
         Folder [folder] => "store-folder-unusable",
+        OtherUser [path, owner, user, folder] => "store-of-other-user",
         Path [folder] => "store-path-no-text",
         NoResults [folder] => "store-without-results",
         DatabaseGone [folder] => "store-without-database",

@@ -25,6 +25,25 @@ pub enum StoreError {
         /// The system's reason.
         source: io::Error,
     },
+    /// The station's folder is another user's, or has something of another user's that this one may not change.
+    #[error(
+        "{} belongs to {owner}, and {user}, by whom this program is run, may not change it; run it as the user of the station, and if \
+         anything in the folder is not that user's, as root: chown -R USER: {}",
+        path.display(),
+        folder.display()
+    )]
+    OtherUser {
+        /// What may not be changed.
+        path: PathBuf,
+        /// Whose it is.
+        owner: String,
+        /// Whose process this is.
+        user: String,
+        /// The station's folder.
+        folder: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
     /// The folder's path is not UTF-8. Lanes are told it in JSON, and SQLite copies a database only to a file of such a name.
     #[error("the path {} is not UTF-8, and no station works in such a folder; rename what is not, or name another folder", folder.display())]
     Path {

@@ -143,7 +143,11 @@ impl Folder {
     }
 
     pub(crate) fn refused(&self, source: io::Error) -> StoreError {
-        StoreError::Folder { folder: self.0.clone(), source }
+        let is_forbidden = source.kind() == io::ErrorKind::PermissionDenied;
+        match self.refuse_other_users() {
+            Err(others) if is_forbidden => others,
+            _ => StoreError::Folder { folder: self.0.clone(), source },
+        }
     }
 
     /// The file that is locked by the program that writes.

@@ -19,6 +19,7 @@ mod folder;
 mod generation;
 mod migrations;
 mod outbox;
+mod owner;
 mod plan_versions;
 mod plant;
 mod reason;
@@ -137,6 +138,7 @@ impl Store {
     pub fn open(folder: &Folder) -> Result<Self, StoreError> {
         folder.refuse_path()?;
         folder.refuse_unfinished_restore()?;
+        folder.refuse_other_users()?;
         for place in [folder.evidence(), folder.spools()] {
             // Whatever the umask, nobody else may put another database there.
             let made = DirBuilder::new().recursive(true).mode(0o750).create(place);

@@ -1,15 +1,15 @@
 //! A station's folder that may only be read: another user's, or on a disk that became read-only after an error.
 
 use std::fs::{self, Permissions};
-use std::os::unix::fs::PermissionsExt as _;
-use std::path::Path;
+use std::os::unix::fs::{PermissionsExt as _, symlink};
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use nix::unistd::geteuid;
 
 use super::made::{End, Made, Run};
 use super::put_back::killed;
-use crate::common::{Did, folder, program, query};
+use crate::common::{Did, PLAN, folder, program, query};
 
 /// A folder to which nobody may write until this is dropped, except for root.
 struct ReadOnly<'a>(&'a Path);
@@ -90,6 +90,55 @@ fn a_log_that_cannot_be_read_in_its_folder_is_not_passed_over() {
     let history =
         Did::from(Command::new(program()).args(["history", "--data"]).arg(copy.path()).output().unwrap());
     assert!(history.code == Some(0) && history.said.contains("S1"), "{history:?}");
+}
+
+/// The folder `path`, or a link to one, which another user than the tests' has made. Only root can give a folder away; anybody else
+/// has one of root's.
+fn of_other_user(path: &Path) -> PathBuf {
+    if geteuid().is_root() {
+        fs::create_dir(path).unwrap();
+        assert!(Command::new("chown").arg("nobody").arg(path).status().unwrap().success());
+    } else {
+        symlink("/", path).unwrap();
+    }
+    path.to_owned()
+}
+
+/// What `program` says, in one line.
+fn line_of(program: &str, arguments: &[&str], path: Option<&Path>) -> String {
+    let said = Did::from(Command::new(program).args(arguments).args(path).output().unwrap()).said;
+    said.trim_end().to_owned()
+}
+
+/// A run's record is saved in one of 256 folders, so one of them that root made would otherwise be met by one run in 256.
+#[test]
+fn a_folder_with_something_that_another_user_made_is_refused_at_once_and_its_owner_named() {
+    let place = folder();
+    let plan = place.path().join("plan.toml");
+    fs::write(&plan, PLAN).unwrap();
+    let run = |data: &Path| {
+        let mut run = as_others(program());
+        run.args(["run", "--any-disk", "--board", "mock", "--serial", "CAT00001", "--plan"]).arg(&plan);
+        Did::from(run.arg("--data").arg(data).output().unwrap())
+    };
+    let ours = place.path().join("ours");
+    let others = of_other_user(&place.path().join("others"));
+    fs::create_dir_all(ours.join("blobs")).unwrap();
+    let among = of_other_user(&ours.join("blobs/ab"));
+    let me = line_of("id", &["-un"], None);
+    for (data, path) in [(&others, &others), (&ours, &among)] {
+        let did = run(data);
+        let owner = line_of("stat", &["-L", "-c", "%U"], Some(path));
+        let belongs = format!("{} belongs to {owner}, and {me}, ", path.display());
+        assert!(did.code == Some(3) && did.complained.contains(&belongs), "{did:?}");
+        let remedy = format!("as root: chown -R USER: {}: ", data.display());
+        assert!(did.complained.contains(&remedy), "{did:?}");
+        assert!(did.complained.contains("store-of-other-user"), "{did:?}");
+    }
+    assert_eq!(fs::read_dir(&ours).unwrap().count(), 1, "no run was begun");
+    // The control.
+    fs::rename(&among, place.path().join("aside")).unwrap();
+    assert_eq!(run(&ours).code, Some(0));
 }
 
 /// Evidence that only another user may read need not be wrong, and hides neither what is nor the other runs.

@@ -1,0 +1,50 @@
+//! To whom a station's folder belongs, and what is in it.
+
+use std::fs;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::Path;
+
+use halfrow::words::plain;
+use nix::errno::Errno;
+use nix::unistd::{AccessFlags, Uid, User, access, geteuid};
+
+use super::folder::LOCK;
+use super::{Folder, StoreError};
+
+/// What a run's result needs, by its name in the folder.
+const NEEDED: [&str; 6] = [LOCK, "station.db", "station.db-wal", "station.db-shm", "spool", "blobs"];
+
+impl Folder {
+    /// Refuses a folder that is another user's, or has something of another user's that this one may not change, as where root
+    /// once worked in it. What root made among the evidence is otherwise met by one record in 256, long after the cause.
+    pub(super) fn refuse_other_users(&self) -> Result<(), StoreError> {
+        let places = [self.0.clone()].into_iter().chain(NEEDED.map(|name| self.0.join(name)));
+        let evidence =
+            fs::read_dir(self.evidence()).into_iter().flatten().flatten().map(|entry| entry.path());
+        places.chain(evidence).try_for_each(|path| self.refuse_other_user(&path))
+    }
+
+    fn refuse_other_user(&self, path: &Path) -> Result<(), StoreError> {
+        let Err(refused @ Errno::EACCES) = access(path, AccessFlags::W_OK) else { return Ok(()) };
+        // What cannot be looked at is in a folder that was refused before it.
+        let owner = fs::metadata(path).map_or(geteuid(), |about| Uid::from_raw(about.uid()));
+        if owner == geteuid() {
+            return Ok(());
+        }
+        Err(StoreError::OtherUser {
+            path: path.to_owned(),
+            owner: named(owner),
+            user: named(geteuid()),
+            folder: self.0.clone(),
+            source: refused.into(),
+        })
+    }
+}
+
+/// A user's name, or the id of one that has none.
+fn named(uid: Uid) -> String {
+    match User::from_uid(uid) {
+        Ok(Some(user)) => plain(&user.name).to_string(),
+        _ => format!("uid {uid}"),
+    }
+}
