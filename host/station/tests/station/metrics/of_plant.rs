@@ -1,7 +1,8 @@
 //! A plant's figures, over all its stations.
 
-use std::fs;
+use std::fs::{self, Permissions};
 use std::io::Write as _;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -114,14 +115,37 @@ fn people_and_machines_look_at_a_plant_that_others_can_reach() {
     assert_eq!(noted, [["prometheus", "token"], ["Braun", "login"]]);
 }
 
-/// The role is the one that the plant's page says how to make.
+/// The block of docs/plant.md in this language that has `what` in it.
+fn block(language: &str, what: &str) -> &'static str {
+    let blocks = include_str!("../../../../../docs/plant.md").split("```");
+    let mut of_language = blocks.filter_map(|block| block.strip_prefix(language));
+    of_language.find(|block| block.contains(what)).unwrap()
+}
+
+/// Has `settings` name the plant as the page does, and its server ask the page's role for a password, which is in the file that the
+/// page names.
+fn as_on_the_page(settings: &Path, server: &Server) {
+    let (_, plant) = block("toml", "postgres://reader@").split_once("[plant]\n").unwrap();
+    let (plant, _) = plant.split_once("[web]").unwrap();
+    let url = server.url().replace("postgres://postgres@", "postgres://reader@");
+    let plant = plant.replace("postgres://reader@db.example/plant", &url);
+    let text = fs::read_to_string(settings).unwrap();
+    let (before, _) = text.split_once("[plant]\n").unwrap();
+    fs::write(settings, format!("{before}[plant]\n{plant}")).unwrap();
+    let file = settings.with_file_name("reader.password");
+    fs::write(&file, "open sesame\n").unwrap();
+    fs::set_permissions(&file, Permissions::from_mode(0o600)).unwrap();
+    server.asks_for_a_password("reader");
+}
+
+/// The role and how the settings name it are those of the plant's page.
 #[test]
 fn the_pages_work_with_a_role_that_only_looks_and_no_machine_is_let_in_without_the_audit() {
     let server = Server::prepared();
     let (_made, _) = send(history(), server.address());
-    let page = include_str!("../../../../../docs/plant.md");
-    let grants = page.split("```sql\n").find(|text| text.contains("GRANT")).unwrap();
-    let (grants, _) = grants.split_once("```").unwrap();
+    // What psql sends for it.
+    let grants =
+        block("sql", "GRANT").replace("\\password reader", "ALTER ROLE reader PASSWORD 'open sesame';");
     let of_audit = "GRANT INSERT ON audit TO reader;\n";
     assert!(grants.contains(of_audit), "{grants}");
     let grant = |text: &str| server.client("plant").batch_execute(text).unwrap();
@@ -130,8 +154,7 @@ fn the_pages_work_with_a_role_that_only_looks_and_no_machine_is_let_in_without_t
     let public =
         "public = \"https://station12.example\"\n[access]\nusers = \"users.toml\"\ntokens = \"tokens.toml\"";
     let settings = settings(&server, folder.path(), public);
-    let text = fs::read_to_string(&settings).unwrap();
-    fs::write(&settings, text.replace("postgres://postgres@", "postgres://reader@")).unwrap();
+    as_on_the_page(&settings, &server);
     did(&["user", "add", "Braun", "--role", "engineer"], &settings, "B-0022\ncorrect horse\n");
     let token = did(&["token", "add", "mes", "--scope", "read"], &settings, "").said;
     let serving = Serving::of(&mut command(&settings));
