@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Makes the photographs here, and for each a PNG of what Pillow shows (NAME.png).
 
+    python3 -m venv .venv && . .venv/bin/activate
     pip install Pillow numpy && ./make.py
 
 Made with Pillow 13.0.0 (libjpeg-turbo 3.2.0, libwebp). The tests read the committed files; nothing runs this script again.
