@@ -17,13 +17,50 @@ const STARTS: &str = "ExecStart=halfrow-station";
 /// network.
 const EXPOSURE: f64 = 2.0;
 
+/// What the program that `unit` starts does where its settings are not there.
+fn without_settings(unit: &str) -> Did {
+    let arguments = unit.lines().find_map(|line| line.strip_prefix(STARTS)).unwrap();
+    let nowhere = arguments.replace("/etc/halfrow", "/nowhere");
+    Command::new(program()).args(nowhere.split_whitespace()).output().unwrap().into()
+}
+
 #[test]
 fn the_unit_calls_the_program_as_it_is_called() {
-    let arguments = UNIT.lines().find_map(|line| line.strip_prefix(STARTS)).unwrap();
-    let nowhere = arguments.replace("/etc/halfrow", "/nowhere");
-    let did: Did = Command::new(program()).args(nowhere.split_whitespace()).output().unwrap().into();
+    let did = without_settings(UNIT);
     assert_eq!(did.code, Some(2), "{did:?}");
     assert!(did.complained.contains("/nowhere/station.toml cannot be read"), "{did:?}");
+}
+
+/// The unit that the commands of docs/plant.md make of the station's.
+fn of_plant(page: &str) -> String {
+    let folder = folder();
+    let [from, to] = ["from", "to"].map(|name| folder.path().join(name));
+    fs::write(&from, UNIT).unwrap();
+    let lines = page.lines().skip_while(|line| !line.starts_with("    sed "));
+    let commands: Vec<_> = lines.take_while(|line| !line.starts_with("    systemctl")).collect();
+    let here = commands
+        .join("\n")
+        .replace("/lib/systemd/system/halfrow-station.service", from.to_str().unwrap())
+        .replace("/etc/systemd/system/halfrow-plant.service", to.to_str().unwrap());
+    assert!(Command::new("sh").args(["-ec", &here]).status().unwrap().success());
+    fs::read_to_string(to).unwrap()
+}
+
+/// The pages of a plant tell systemd nothing, and write to a folder of their own.
+#[test]
+fn the_unit_of_a_plant_is_started_without_news_and_may_write_to_the_folder_of_its_settings() {
+    let page = include_str!("../../../../docs/plant.md");
+    let unit = of_plant(page);
+    let did = without_settings(&unit);
+    assert!(did.complained.contains("/nowhere/plant.toml cannot be read"), "{did:?}");
+    let value = |key: &str| unit.lines().find_map(|line| line.strip_prefix(key));
+    assert_eq!((value("Type="), value("WatchdogSec=")), (Some("exec"), None));
+    let data = format!("\ndata = \"/var/lib/{}\"", value("StateDirectory=").unwrap());
+    let (_, settings) = page.split_once("name = \"north\"").unwrap();
+    assert!(settings.contains(&data), "{data}");
+    let did = analysed(&unit, &["verify"]);
+    assert_eq!((did.code, did.complained.as_str()), (Some(0), ""), "{did:?}");
+    assert_eq!(value("ProtectSystem="), Some("strict"), "the control");
 }
 
 /// The result of `systemd-analyze` for this unit.
