@@ -2,7 +2,6 @@
 import re
 import shutil
 
-import numpy as np
 import pytest
 
 import halfrow
@@ -10,6 +9,7 @@ from conftest import ROOT
 
 PAGE = ROOT / "docs/python.md"
 README = ROOT / "python/halfrow/README.md"
+CAMERA = "python/halfrow/examples/camera.yml"
 
 
 def blocks(path):
@@ -17,11 +17,11 @@ def blocks(path):
 
 
 @pytest.fixture
-def folder(tmp_path, opencv, monkeypatch):
-    """A folder with the files that the examples name."""
-    shutil.copy(opencv, tmp_path / "camera.yml")
-    frame = np.random.default_rng(1).integers(0, 4096, (720, 1280), dtype=np.uint16)
-    halfrow.write_frame(tmp_path / "raw.pgm", frame)
+def folder(tmp_path, monkeypatch):
+    """A folder with the one file that the examples say how to get."""
+    for page in (PAGE, README):
+        assert CAMERA in page.read_text()
+    shutil.copy(ROOT / CAMERA, tmp_path / "camera.yml")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
