@@ -1,5 +1,7 @@
 //! Boards that are sound except for one rule, which only a request breaks that no host makes, or which only a header shows.
 
+use std::ops::Range;
+
 use halfrow::board::RefusalCode;
 use halfrow::result::{Answer, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
@@ -56,6 +58,9 @@ fn each_refusal_that_does_not_come_fails() {
     assert!(rules.len() > 8, "{rules:?}");
 }
 
+/// Where COMMIT names its frame and its shape (WIRE.md, 13).
+const FRAME: Range<usize> = 8..10;
+const SHAPE: Range<usize> = 11..13;
 const SPANS: [Kind; 3] = [Kind::TableWrite, Kind::TableRead, Kind::TableCrc];
 
 /// The rule that a board breaks which takes the byte `at` in requests of `kind`, if it is `given`, for `taken`.
@@ -98,6 +103,77 @@ fn entries_and_signatures_that_are_cut_short_are_not_written() {
             }
         });
         assert_eq!(broken(&report).0, Rule::Payload, "{kind}");
+    }
+}
+
+#[test]
+fn a_commit_with_a_v_of_0_is_of_row_factors() {
+    let refusal = Refusal { code: RefusalCode::Range, kind: Kind::Commit.code(), detail: 2 };
+    let refused = move |packet: Passing| packet.saying(&Reply::Refusal(refusal));
+    let report = answering(Kind::Commit, |payload| payload.get(SHAPE) == Some(&[0, u8::MAX]), refused);
+    assert_eq!(broken(&report).0, Rule::NoGrid);
+}
+
+#[test]
+fn no_bit_of_the_frame_of_a_commit_is_lost() {
+    // Those for which the rules commit.
+    let frames = [0x5a5a, !0x5a5a].map(u16::to_le_bytes);
+    for bit in 0..u16::BITS {
+        for stays in [0, 1 << bit] {
+            let report = hearing(Kind::Commit, move |payload| {
+                let Some(frame) = payload.get_mut(FRAME).filter(|frame| frames.iter().any(|it| it == frame))
+                else {
+                    return;
+                };
+                let named = u16::from_le_bytes([frame[0], frame[1]]);
+                frame.copy_from_slice(&(named & !(1 << bit) | stays).to_le_bytes());
+            });
+            assert_eq!(report.verdict(), Verdict::Fail, "{bit}, {stays}: {}", report.headline());
+        }
+    }
+}
+
+/// The tallest grid of the widest frames that the board can have, and the next one.
+#[test]
+fn a_board_has_the_grids_that_its_entries_have_room_for_and_no_others() {
+    let table_crc = Refusal { code: RefusalCode::TableCrc, kind: Kind::Commit.code(), detail: 3 };
+    let range = Refusal { code: RefusalCode::Range, detail: 2, ..table_crc };
+    for (right, wrong) in [(table_crc, range), (range, table_crc)] {
+        let mut is_wide = false;
+        let report = altering(move |toward, packet| {
+            if toward == Toward::Board && packet.is(Kind::Configure) {
+                is_wide = packet.payload[..2] == Options::default().max_width.to_le_bytes();
+            }
+            let is_meant = is_wide && toward == Toward::Host && refusal(&packet) == Some(right);
+            vec![if is_meant { packet.saying(&Reply::Refusal(wrong)) } else { packet }]
+        });
+        assert_eq!(broken(&report).0, Rule::Shape, "{wrong:?}");
+    }
+}
+
+/// To the board the row of the last number of all is one that may come.
+#[test]
+fn the_last_number_of_all_is_no_rows() {
+    let report = altering(|_, packet| {
+        let refused = refusal(&packet).filter(|_| packet.header.window == u32::MAX);
+        vec![refused.map_or(packet.clone(), |refused| {
+            packet.saying(&Reply::Refusal(Refusal { code: RefusalCode::Row, ..refused }))
+        })]
+    });
+    assert_eq!(broken(&report).0, Rule::Credit);
+}
+
+/// Each bit of the count, which is in byte 18 of a row.
+#[test]
+fn a_row_says_how_often_it_came_before() {
+    for bit in 0..7 {
+        let report = altering(move |toward, mut packet| {
+            if toward == Toward::Host && packet.is(Kind::RowOut) {
+                packet.payload[18] &= !(1 << bit);
+            }
+            vec![packet]
+        });
+        assert_eq!(report.verdict(), Verdict::Fail, "{bit}: {}", report.headline());
     }
 }
 

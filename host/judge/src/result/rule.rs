@@ -42,6 +42,8 @@ pub enum Rule {
     Generation,
     /// A commit is refused if the board cannot have its grid, or if its grid reads back otherwise.
     Shape,
+    /// A commit with v = 0 is of row factors, whatever its k.
+    NoGrid,
     /// A commit takes effect with its frame, not before: then the two banks change places.
     CommitFrame,
     /// What would change the tables of a pending commit is refused.

@@ -168,6 +168,7 @@ pub(super) fn meaning(rule: Rule) -> &'static str {
         Rule::CommitCrc => "a commit whose CRC does not match the tables must be refused",
         Rule::Generation => "a commit of active or pending tables must be answered, generation 0 refused",
         Rule::Shape => "a commit of a grid that the board cannot have must be refused",
+        Rule::NoGrid => "a commit with v = 0 must be of row factors, whatever its k",
         Rule::CommitFrame => "a commit must take effect with its frame, not before, and swap the banks",
         Rule::Pending => "nothing may change the tables of a pending commit",
         Rule::Forgotten => "RESET must forget a pending commit",

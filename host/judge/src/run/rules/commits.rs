@@ -23,9 +23,7 @@ impl Rules<'_, '_> {
     pub(super) fn commits(&mut self) -> Result<(), End> {
         // One row a frame.
         self.configure(1)?;
-        self.upload(0)?;
-        self.half_a_shape(FIRST)?;
-        self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))?;
+        self.no_shapes()?;
         self.upload(1)?;
         self.wrong_sums()?;
         if self.capabilities.table_banks > 1 {
@@ -53,12 +51,20 @@ impl Rules<'_, '_> {
         self.replied(Rule::Generation, &request, vec![generation])
     }
 
-    /// Commits the small tables at place 0 with a v but no k: that is no shape, so the bank holds row factors.
-    fn half_a_shape(&mut self, generation: u8) -> Result<(), End> {
-        let request = Request::Commit(self.commit_of(0, generation, FRAME));
-        let mut bytes = payload(&request);
-        bytes.push(*GridShape::V.end() as u8);
-        self.bytes_replied(Rule::Skipped, request.kind(), &bytes, vec![generation])
+    /// Commits the small tables at place 0 with a v but no k, and with a v of 0 and a k that no board takes: neither is a shape, so
+    /// the bank holds row factors.
+    fn no_shapes(&mut self) -> Result<(), End> {
+        let unfinished = vec![*GridShape::V.end() as u8];
+        for (rule, generation, shape) in
+            [(Rule::Skipped, SECOND, unfinished), (Rule::NoGrid, FIRST, vec![0, u8::MAX])]
+        {
+            self.upload(0)?;
+            let request = Request::Commit(self.commit_of(0, generation, FRAME));
+            let bytes = [payload(&request), shape].concat();
+            self.bytes_replied(rule, request.kind(), &bytes, vec![generation])?;
+            self.one_rows(rule, &[FRAME], (generation, 0))?;
+        }
+        Ok(())
     }
 
     /// Frames of one row each, which must be made with the small tables at `place` as `generation`.
@@ -141,12 +147,14 @@ impl Rules<'_, '_> {
     fn at_each_bank(&mut self) -> Result<(), End> {
         let (mut active, mut next) = ((FIRST, 0), (SECOND, 1));
         for before in 0..u16::from(self.capabilities.row_banks_out.min(BANKS)) {
+            // Two frames that differ in every bit.
+            let frame = if before % 2 == 0 { FRAME } else { !FRAME };
             self.upload(next.1)?;
-            self.commit(next.1, next.0, FRAME)?;
+            self.commit(next.1, next.0, frame)?;
             let old = self.small.made(active.1, 1, active.0);
             let new = self.small.made(next.1, 1, next.0);
             let compared = Compared::default().with(&self.small, 0..=before, &old);
-            let compared = compared.with(&self.small, [FRAME, FRAME + 1], &new);
+            let compared = compared.with(&self.small, [frame, frame + 1], &new);
             self.frames(Rule::CommitFrame, compared)?;
             mem::swap(&mut active, &mut next);
         }

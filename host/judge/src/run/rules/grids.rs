@@ -1,11 +1,11 @@
 //! Grids that must be refused, on a board that takes grids.
 
-use halfrow_model::{GridShape, TableSet};
+use halfrow_model::{Geometry, GridShape, TableSet};
 use halfrow_protocol::message::{Commit, Entries, Grids, RefusalCode, Request, Shape, Span, Table};
 
 use super::tables::PLACE;
 use super::{FIRST_FACTOR, Rules};
-use crate::board::grids;
+use crate::board::{RowTiming, grids};
 use crate::result::Rule;
 use crate::run::findings::End;
 use crate::run::plan::parts::of_height;
@@ -50,13 +50,14 @@ impl Rules<'_, '_> {
         }
         self.refused(Rule::Shape, &Request::Commit(of(1, known)), RefusalCode::TableCrc, Table::Grid as u16)?;
         self.kernel_of_grid(of(1, known))?;
-        self.too_many_entries(grids, of(1, known))
+        self.most_entries(grids, of(1, known))
     }
 
     /// `finest` with the CRC of a grid that reads back right and of a kernel that does not. The grid's entries are the
     /// row factors that the bank holds.
     fn kernel_of_grid(&mut self, finest: Commit) -> Result<(), End> {
-        let entries = self.entries_of_grid(finest, self.height);
+        let geometry = of_height(&self.small.geometry, self.height);
+        let entries = shape_of(finest).map(|shape| shape.entries(&geometry));
         let there = self.small.tables[1].tables.to_bytes();
         let grid = entries.and_then(|entries| there.get(..entries * Table::Grid.entry_bytes()));
         let Some(grid) = grid else { return Ok(()) };
@@ -64,23 +65,30 @@ impl Rules<'_, '_> {
         self.refused(Rule::Shape, &Request::Commit(other), RefusalCode::TableCrc, Table::Kernel as u16)
     }
 
-    /// The entries that the grid of `commit` has for small frames of `rows` rows.
-    fn entries_of_grid(&self, commit: Commit, rows: usize) -> Option<usize> {
-        let Shape { v, k } = commit.shape?;
-        let shape = GridShape::new(v.into(), k.into()).ok()?;
-        Some(shape.entries(&of_height(&self.small.geometry, rows)))
-    }
-
-    /// The finest grid for frames of the greatest height, if a bank does not hold it.
-    fn too_many_entries(&mut self, grids: Grids, finest: Commit) -> Result<(), End> {
-        let rows = self.capabilities.max_height.into();
-        let entries = self.entries_of_grid(finest, rows);
-        if entries.is_none_or(|entries| entries <= grids.entries.into()) {
-            return Ok(());
+    /// The grid of `finest`, which reads back otherwise, for the most rows for which a bank holds it, and for more: of the narrowest
+    /// frames, and of the widest.
+    fn most_entries(&mut self, grids: Grids, finest: Commit) -> Result<(), End> {
+        let Some(shape) = shape_of(finest) else { return Ok(()) };
+        let (height, depth) = (self.height, self.small.geometry.depth());
+        for width in [self.width, usize::from(self.capabilities.max_width) & !1] {
+            let of_rows = |rows| Geometry::new(width, rows, depth, width as u32 - 1).ok();
+            let all = (1..=usize::from(self.capabilities.max_height)).filter_map(of_rows);
+            let (held, others): (Vec<_>, Vec<_>) =
+                all.partition(|geometry| shape.entries(geometry) <= grids.entries.into());
+            let held = held.last().map(|most| (most, RefusalCode::TableCrc, Table::Grid as u16));
+            let others = others.first().into_iter().chain(others.last());
+            let others = others.map(|beyond| (beyond, RefusalCode::Range, K));
+            for (geometry, code, detail) in held.into_iter().chain(others) {
+                self.set(geometry, RowTiming::default())?;
+                self.refused(Rule::Shape, &Request::Commit(finest), code, detail)?;
+            }
         }
-        let height = self.height;
-        self.configure(rows)?;
-        self.refused(Rule::Shape, &Request::Commit(finest), RefusalCode::Range, K)?;
         self.configure(height)
     }
+}
+
+/// The grid that `commit` names.
+fn shape_of(commit: Commit) -> Option<GridShape> {
+    let Shape { v, k } = commit.shape?;
+    GridShape::new(v.into(), k.into()).ok()
 }

@@ -29,8 +29,8 @@ const PLACE: usize = 12;
 pub(super) const TRIES: u32 = 8;
 /// How often the board must say of a row that it has entered and is not inside.
 const SAYINGS: u32 = 3;
-/// How often a row is asked for again.
-const AGAIN: u16 = 3;
+/// How often a row is asked for again: enough for counts of which any of seven bits is wrong.
+const AGAIN: u16 = 64;
 /// The lowest bit of a row's number that a session does not reach by counting.
 const FAR: u32 = 8;
 /// Bytes that are sent to the board between rows and the RESET that drops them.
@@ -360,6 +360,14 @@ impl Rules<'_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// The last numbers of all. The window does not wrap, so the greatest one never gets credit.
+    pub(super) fn last_numbers(&mut self) -> Result<(), End> {
+        self.run.board.go_on_from(u32::MAX - self.height as u32).during(CheckName::Rules)?;
+        self.right_frames(&[FRAME])?;
+        self.counted()?;
+        self.row_refused(Rule::Credit, self.place(0), RefusalCode::Credit)
     }
 
     /// The board's row numbers must be the host's.

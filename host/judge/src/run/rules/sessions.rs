@@ -46,6 +46,7 @@ impl Rules<'_, '_> {
         self.other_versions()?;
         self.powered(|rules| rules.always(Self::greeted_again))?;
         // The session that follows drops what the link still holds of this one, with greater numbers of rows.
+        self.thrice(Self::last_numbers)?;
         self.thrice(Self::window_goes_down)?;
         self.taken_over()?;
         self.numbers_of_sessions()?;
