@@ -6,9 +6,10 @@ use crate::{flags, json};
 use halfrow::board::{BoardError, OpenFailed};
 use halfrow::link::OpenError;
 use halfrow::optics::OpticsError;
-use halfrow::result::Problem;
+use halfrow::result::{Document, Problem, Schema};
 use halfrow::run::{Misfit, RestoreError, WithinError};
 use halfrow_lab::paper::PaperError;
+use serde_json::Value;
 
 /// Why a command has no result.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub struct Failure {
     pub error: anyhow::Error,
     /// The option whose value is wrong, as written on the command line, if that is known.
     pub(crate) option: Option<&'static str>,
+    /// The keys of its document in addition to those of any other failure: what the command found nevertheless.
+    pub(crate) so_far: Option<Value>,
 }
 
 impl Failure {
@@ -39,7 +42,7 @@ impl Failure {
 
     /// A failure with this exit code.
     pub(crate) fn of(exit: Exit, error: impl Into<anyhow::Error>) -> Self {
-        Self { exit, error: error.into(), option: None }
+        Self { exit, error: error.into(), option: None, so_far: None }
     }
 
     /// This failure, attributed to the value of `option`, wherever that comes from.
@@ -62,7 +65,11 @@ impl Failure {
     /// The document of `command`, which failed with this.
     #[must_use]
     pub fn document(&self, command: &str) -> String {
-        json::without_result(command, self.exit, self.exit.verdict(), &self.problem())
+        let (problem, rest) = (self.problem(), &self.so_far);
+        let (verdict, error) = (self.exit.verdict(), Some(&problem));
+        let failed =
+            Document { schema: Schema, command, verdict, exit_code: self.exit, board: None, error, rest };
+        json::document(&failed).unwrap_or_default()
     }
 }
 

@@ -100,6 +100,45 @@ fn a_poor_link_is_measured_to_its_end() {
     );
 }
 
+/// None of eight tries in succession gets through.
+#[test]
+fn a_link_test_that_a_poor_link_breaks_off_has_its_figures() {
+    let poor = |rate: &str| format!("mock,speed=1200000,fault=drop,rate={rate}");
+    for rate in ["2e-4", "4e-4"] {
+        let ended = measure(&poor(rate));
+        assert_eq!(ended.code, Some(3), "{}", ended.stderr);
+        let said = ended.json();
+        assert_eq!((&said["exit_code"], &said["link"]["too_poor"]), (&3.into(), &true.into()), "{said}");
+        assert_eq!(said["error"]["code"], "link-test-on-poor-link");
+        assert_eq!(said["board"]["kind"], "mock");
+        let errors = &said["link"]["errors"];
+        assert!(errors["retries"].as_u64() > Some(7), "{said}");
+        assert!(
+            errors["damaged_in"].as_u64() > Some(0) && errors["damaged_out"].as_u64() > Some(0),
+            "{said}"
+        );
+    }
+    let ended = halfrow(["link", "--seconds", "0.5", "--board", &poor("2e-4")]);
+    let lines: Vec<_> = ended.stdout.lines().collect();
+    let [_, _, damaged, judging] = lines[..] else { panic!("{}", ended.stdout) };
+    assert!(damaged.starts_with("damaged ") && damaged.contains(" sent again"), "{damaged}");
+    assert!(
+        judging.starts_with("judging ")
+            && judging.contains("too poor for verify, since this test broke off: "),
+        "{judging}"
+    );
+    assert!(ended.stderr.contains("; check cable, connectors and rate"), "{}", ended.stderr);
+    assert!(!ended.stderr.contains("halfrow verify"), "{}", ended.stderr);
+}
+
+/// Whether the board or the link loses it is not known then.
+#[test]
+fn a_link_test_that_one_lost_row_breaks_off_asks_for_a_run() {
+    let ended = measure("mock,speed=1200000,fault=lost-row,row=40");
+    ends(&ended, 3, "run `halfrow verify` to find out whether the board or the link loses it");
+    assert_eq!(ended.json()["error"]["code"], "row-missing");
+}
+
 #[test]
 fn a_link_that_breaks_is_an_error() {
     let served = Served::on_a_serial_port("mock,fault=disconnect,packet=30");

@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::{Context, Failure, print_or_tell};
 use crate::arguments::board::BoardArguments;
+use crate::console;
 use crate::document::result_text;
 use crate::exit::Exit;
 use halfrow::board::{Board, RetryLimit};
@@ -36,12 +37,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         (tested, BoardReport::of(board.welcome(), board.capabilities(), candidate.kind, candidate.target))
     });
     let (tested, board) = asked?;
-    let figures = tested.map_err(|error| match error {
-        LinkTestError::Board(error) => error.into(),
-        LinkTestError::BrokeOff { ref source, .. } => Failure::of(source.cause().into(), error),
-        error @ LinkTestError::NoFrame(_) => Failure::error(error),
-    })?;
     let limit = arguments.board.retry_limit(&context.settings);
+    let figures = tested.map_err(|error| failed(error, &board, limit, context))?;
     let too_poor = figures.errors.are_beyond(limit);
     let exit = match (figures.errors.wrong, too_poor) {
         (1.., _) => Exit::Fail,
@@ -53,23 +50,48 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         let link = LinkSummary { figures: &figures, retry_limit, too_poor };
         return print_or_tell(exit, &result_text("link", exit, Some(&board), json!({ "link": link }))?);
     }
-    let (figures, last) = (text(&figures), enough(&figures.errors, limit, too_poor));
-    print_or_tell(exit, &format!("{:<12} {} ({})\n{figures}\n{last}", "board", board.target, board.kind))
+    let verdict = if too_poor { "too poor for verify" } else { "good enough for verify" };
+    let (figures, last) = (text(&figures), enough(verdict, &figures.errors, limit));
+    print_or_tell(exit, &format!("{}\n{figures}\n{last}", of_board(&board)))
+}
+
+/// The failure of a test that did not come to its end, once the figures are told that it has nevertheless.
+fn failed(error: LinkTestError, board: &BoardReport, limit: RetryLimit, context: &Context) -> Failure {
+    match error {
+        LinkTestError::Board(error) => error.into(),
+        LinkTestError::BrokeOff { ref source, .. } => Failure::of(source.cause().into(), error),
+        LinkTestError::PoorLink { ref link, ref errors, .. } => {
+            if !context.json {
+                let [of_link, damaged] = damage(link, errors);
+                let last = enough("too poor for verify, since this test broke off", errors, limit);
+                console::tell(&format!("{}\n{of_link}\n{damaged}\n{last}", of_board(board)));
+            }
+            let figures = json!({ "link": link, "errors": errors });
+            let retry_limit = limit.of(errors.packets_out);
+            let link = LinkSummary { figures: &figures, retry_limit, too_poor: true };
+            let so_far = json!({ "board": board, "link": link });
+            Failure { so_far: Some(so_far), ..Failure::error(error) }
+        }
+        LinkTestError::NoFrame(_) => Failure::error(error),
+    }
+}
+
+fn of_board(board: &BoardReport) -> String {
+    format!("{:<12} {} ({})", "board", board.target, board.kind)
 }
 
 /// The figures, and whether a board can be judged over such a link.
 #[derive(Serialize)]
-struct LinkSummary<'a> {
+struct LinkSummary<'a, F> {
     #[serde(flatten)]
-    figures: &'a Figures,
+    figures: &'a F,
     /// The most packets that a run of this length may send again, late ones not counted.
     retry_limit: u64,
     too_poor: bool,
 }
 
 /// `too poor for verify: 9.6 % sent again (120 of 1,250), the limit is 16 plus 5 %`, late ones not counted.
-fn enough(errors: &Errors, limit: RetryLimit, too_poor: bool) -> String {
-    let verdict = if too_poor { "too poor for verify" } else { "good enough for verify" };
+fn enough(verdict: &str, errors: &Errors, limit: RetryLimit) -> String {
     let share = 100.0 * errors.lost() as f64 / errors.packets_out.max(1) as f64;
     let (again, all) = (grouped(errors.lost()), grouped(errors.packets_out));
     // Rounded: 7 % as a share, times 100, is not 7 any more.
@@ -82,25 +104,7 @@ fn enough(errors: &Errors, limit: RetryLimit, too_poor: bool) -> String {
 
 fn text(figures: &Figures) -> String {
     let Figures { link, errors, round_trips, .. } = figures;
-    let damaged = errors.damaged_out + errors.damaged_in;
-    let share = if damaged == 0 { "none".to_owned() } else { format!("{:.1e}", errors.rate) };
-    let late = match errors.late {
-        0 => String::new(),
-        late => format!(", {} only since the answer was late", grouped(late)),
-    };
-    let mut lines = vec![
-        format!("{:<12} {link}", "link"),
-        format!(
-            "{:<12} {} of {} ({} out, {} in): {share}, below {:.1e} at 95 % confidence; {} sent again{late}",
-            "damaged",
-            grouped(damaged),
-            count(errors.packets, "packet"),
-            grouped(errors.damaged_out),
-            grouped(errors.damaged_in),
-            errors.bound,
-            grouped(errors.retries)
-        ),
-    ];
+    let mut lines = damage(link, errors).to_vec();
     let timed = [
         ("round trip", times(round_trips)),
         ("to board", rates(&figures.to_board)),
@@ -120,6 +124,29 @@ fn text(figures: &Figures) -> String {
         lines.push(format!("{:<12} {answers} {hold} other bytes than were sent, with a right CRC", "BOARD"));
     }
     lines.join("\n")
+}
+
+/// The name of the link, and what was damaged on it.
+fn damage(link: &str, errors: &Errors) -> [String; 2] {
+    let damaged = errors.damaged();
+    let share = if damaged == 0 { "none".to_owned() } else { format!("{:.1e}", errors.rate) };
+    let late = match errors.late {
+        0 => String::new(),
+        late => format!(", {} only since the answer was late", grouped(late)),
+    };
+    [
+        format!("{:<12} {link}", "link"),
+        format!(
+            "{:<12} {} of {} ({} out, {} in): {share}, below {:.1e} at 95 % confidence; {} sent again{late}",
+            "damaged",
+            grouped(damaged),
+            count(errors.packets, "packet"),
+            grouped(errors.damaged_out),
+            grouped(errors.damaged_in),
+            errors.bound,
+            grouped(errors.retries)
+        ),
+    ]
 }
 
 /// What replaces a figure that cannot be measured on a wire without a speed.
@@ -179,7 +206,7 @@ mod tests {
         };
         for percent in [0.0, 0.1, 2.345, 7.0, 14.0, 28.0, 55.0, 100.0] {
             let limit = RetryLimit::of_percent(percent);
-            let said = enough(&errors, limit, false);
+            let said = enough("good enough for verify", &errors, limit);
             assert!(said.ends_with(&format!(", the limit is 16 plus {percent} %")), "{said}");
         }
     }

@@ -73,6 +73,12 @@ impl Errors {
 }
 
 impl Errors {
+    /// Packets that arrived damaged on either side.
+    #[must_use]
+    pub fn damaged(&self) -> u64 {
+        self.damaged_out + self.damaged_in
+    }
+
     /// Packets that had to be sent again, since something was lost.
     #[must_use]
     pub fn lost(&self) -> u64 {

@@ -14,8 +14,9 @@ use halfrow_protocol::message::ROW_FACTOR_BYTES;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
-use crate::board::{Bank, Board, BoardError, Table, TablePort, Tally};
-use crate::words::count;
+use crate::board::{Bank, Board, BoardError, RetryLimit, Table, TablePort, Tally};
+use crate::result::Problem;
+use crate::words::{count, grouped};
 
 pub use figures::{Errors, Figures, Rate, RoundTrips, Throughput};
 use times::Times;
@@ -38,6 +39,20 @@ pub enum LinkTestError {
         /// What broke it off.
         source: BoardError,
     },
+    /// The test broke off over a link that had damaged packets, or lost others than the one that never came.
+    #[error(
+        "the link test broke off, with {} damaged and {} sent again by then; check cable, connectors and rate",
+        count(.errors.damaged(), "packet"),
+        grouped(.errors.retries)
+    )]
+    PoorLink {
+        /// The link's name, for people.
+        link: String,
+        /// The errors of all parts until then.
+        errors: Box<Errors>,
+        /// What broke it off, without what that asks for: such a link explains it.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// The board's capabilities leave no frame that could be streamed to it.
     #[error("the board takes no frame that could be streamed; check its capabilities with `halfrow info`")]
     NoFrame(#[source] Box<dyn std::error::Error + Send + Sync>),
@@ -53,11 +68,15 @@ pub const PARTS: u32 = 5;
 /// # Errors
 /// [`LinkTestError`] when the board stops answering, or the link is too poor.
 pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, LinkTestError> {
-    let random = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
-    let mut test = Test { board, seconds, random, wrong: 0, begun: 0 };
+    board.start_afresh()?;
+    let (before, random) = (board.tally(), Pcg64Mcg::new(u128::from(seed) | 1 << 64));
+    let mut test = Test { board, before, damaged_before: 0, seconds, random, wrong: 0, begun: 0 };
     test.figures().map_err(|error| match error {
         LinkTestError::Board(source) if test.wrong > 0 => {
             LinkTestError::BrokeOff { wrong: test.wrong, source }
+        }
+        LinkTestError::Board(source @ (BoardError::NoAnswer { .. } | BoardError::RowMissing { .. })) => {
+            test.broken_off(source)
         }
         error => error,
     })
@@ -65,6 +84,9 @@ pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, L
 
 struct Test<'a> {
     board: &'a mut Board,
+    before: Tally,
+    /// Packets that reached the board damaged in an earlier session of the test.
+    damaged_before: u64,
     seconds: Duration,
     random: Pcg64Mcg,
     /// Answers so far that held other bytes than were sent.
@@ -82,21 +104,41 @@ struct Begun {
 
 impl Test<'_> {
     fn figures(&mut self) -> Result<Figures, LinkTestError> {
-        self.board.start_afresh()?;
-        let before = self.board.tally();
         let round_trips = self.round_trips()?;
         self.echoes()?;
         let to_board = self.outward()?;
-        let damaged_before = self.damaged_out()?;
+        let damaged = self.damaged_out()?;
         // A late copy of what was written would make the tables of a sound board wrong from then on.
         self.board.open_another_session(self.board.welcome.nonce.wrapping_add(1))?;
+        self.damaged_before = damaged;
         let to_host = self.inward()?;
         let together = self.together()?;
-        let damaged_out = damaged_before + self.damaged_out()?;
-        let errors = Errors::between(before, self.board.tally(), damaged_out, self.wrong);
+        let errors = self.errors()?;
         let limit = self.board.bytes_per_second();
         debug_assert_eq!(self.begun, PARTS, "who waits for a test counts on it");
         Ok(Figures { link: self.board.link_name(), limit, errors, round_trips, to_board, to_host, together })
+    }
+
+    /// The errors so far.
+    fn errors(&mut self) -> Result<Errors, BoardError> {
+        let damaged_out = self.damaged_before + self.damaged_out()?;
+        Ok(Errors::between(self.before, self.board.tally(), damaged_out, self.wrong))
+    }
+
+    /// Why the test broke off when `source` came: a link that loses packets explains that something never came.
+    fn broken_off(&mut self, source: BoardError) -> LinkTestError {
+        match self.errors() {
+            // What never came was itself sent again, less often than that.
+            Ok(errors) if errors.damaged() > 0 || errors.lost() > RetryLimit::default().fixed => {
+                LinkTestError::PoorLink {
+                    link: self.board.link_name(),
+                    errors: errors.into(),
+                    source: Problem::of(&source).unasked().into(),
+                }
+            }
+            Err(why @ (BoardError::Stopped(_) | BoardError::Link { .. })) => why.into(),
+            Ok(_) | Err(_) => source.into(),
+        }
     }
 
     /// Begins one of the [`PARTS`].

@@ -185,6 +185,7 @@ impl RunContext<'_> {
                     LinkTestError::Board(source) | LinkTestError::BrokeOff { source, .. } => {
                         (source.cause(), source)
                     }
+                    LinkTestError::PoorLink { source, .. } => (Cause::Station, &**source),
                     LinkTestError::NoFrame(_) => (Cause::Station, &error),
                 };
                 // A try that met a board which answers wrong is not repeated without a person.

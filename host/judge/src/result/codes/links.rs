@@ -130,6 +130,7 @@ codes! {
     }
     LinkTestError {
         BrokeOff [wrong] => "link-test-broke-off",
+        PoorLink [errors] => "link-test-on-poor-link",
         NoFrame => "link-test-frame-not-made",
         = Board,
     }

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::frames::RawLayout;
 use crate::link::{Holder, UsbBoard};
+use crate::link_test::Errors;
 use crate::tables::Place;
 use crate::verdict::StoppedBy;
 
@@ -27,7 +28,7 @@ macro_rules! as_they_are {
         }
     })+ };
 }
-as_they_are!(u8, u16, u32, u64, usize, i32, i64, f64, bool, String, &'static str);
+as_they_are!(u8, u16, u32, u64, usize, i32, i64, f64, bool, String, &'static str, Box<Errors>);
 
 /// Implements [`Parameter`] for types that are written as their text.
 macro_rules! by_words {
