@@ -155,6 +155,18 @@ fn what_does_not_fit_the_board_is_refused() {
     refused(&folder, &on("mock,taps=five", "keys"), "the kernel needs seven taps");
 }
 
+/// Another bitstream would not mend its memory.
+#[test]
+fn a_board_that_keeps_its_tables_wrong_is_to_be_judged() {
+    for fault in ["row-factor", "kernel-word"] {
+        let call = small("correct", &["builtin:bars", "-o", "out.pgm", "--board"]);
+        let ended = Folder::new().halfrow(call.into_iter().chain([format!("mock,fault={fault}").as_str()]));
+        assert_eq!(ended.code, Some(3), "{}", ended.stderr);
+        let asked = "; run `halfrow verify`, which reads the tables back and names what is wrong in them";
+        assert!(ended.stderr.contains(asked) && !ended.stderr.contains("bitstream"), "{}", ended.stderr);
+    }
+}
+
 #[test]
 fn a_file_that_is_there_is_replaced_only_when_that_is_allowed() {
     let folder = Folder::new();

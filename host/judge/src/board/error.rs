@@ -141,7 +141,8 @@ pub enum BoardError {
     )]
     SessionLost,
     /// The board refused a request. If it refuses a kind, a payload, taps or, most often, a range, the board does not do
-    /// what it says that it can; any other refusal may come from another host or from an old packet.
+    /// what it says that it can. If a table reads back with another CRC, its memory may be faulty. Any other refusal may come
+    /// from another host or from an old packet.
     #[error(
         "the board refused {kind}: {code} (detail {detail}){}", advice(.refusal), kind = .kind, code = .refusal.code,
         detail = .refusal.detail
@@ -273,6 +274,9 @@ fn advice(refusal: &Refusal) -> &'static str {
         }
         _ if is_own(refusal) => {
             "; its capabilities allow that: correct what it says of itself (`halfrow info`), or load another bitstream"
+        }
+        RefusalCode::TableCrc => {
+            "; run `halfrow verify`, which reads the tables back and names what is wrong in them"
         }
         RefusalCode::Busy => "; stop whatever else feeds the board's core, then run again",
         _ => "; run again, and if it refuses each time, load a bitstream that follows protocol/WIRE.md",
