@@ -51,14 +51,6 @@ pub enum OpenError {
         /// The options that the board stands for.
         meaning: String,
     },
-    /// The target has an option, but boards of this kind take none.
-    #[error("`{kind}` takes no option, but got `{option}`; leave it out")]
-    NoOption {
-        /// The kind.
-        kind: String,
-        /// The option.
-        option: String,
-    },
     /// The board does not take the options in the target.
     #[error("the target `{target}` does not suit {board}")]
     Options {
@@ -158,7 +150,6 @@ impl OpenError {
             | Self::AddressMissing { .. }
             | Self::Option { .. }
             | Self::OtherBoard { .. }
-            | Self::NoOption { .. }
             | Self::Options { .. }
             | Self::Pace { .. }
             | Self::UnknownFront(_)

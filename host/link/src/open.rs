@@ -142,7 +142,7 @@ pub(crate) fn open_replay(target: &Target) -> Result<Box<dyn Link>, OpenError> {
 /// The recording that `target` names; none for another kind of target.
 ///
 /// # Errors
-/// [`OpenError`] when it has options or no file, or the file is no recording.
+/// [`OpenError`] when it names no file, or the file is no recording.
 pub fn recording(target: &Target) -> Result<Option<Recording>, OpenError> {
     if target.kind == "replay" { read_replay(target).map(Some) } else { Ok(None) }
 }
@@ -181,9 +181,6 @@ fn read_replay(target: &Target) -> Result<Recording, OpenError> {
 }
 
 fn file_of(target: &Target) -> Result<&str, OpenError> {
-    if let Some((key, value)) = target.options.first() {
-        return Err(OpenError::NoOption { kind: target.kind.clone(), option: format!("{key}={value}") });
-    }
     let file = target.address.as_deref().filter(|file| !file.is_empty());
     file.ok_or_else(|| OpenError::address_missing(target))
 }

@@ -1,11 +1,14 @@
 //! Target strings: `KIND[:ADDRESS][,KEY=VALUE]…` names a board, without characters that a shell would interpret. Blanks after a
-//! comma are ignored.
+//! comma are ignored. A recording takes no options, so all that follows `replay:` is its path, commas and blanks included.
 
 use std::fmt;
 use std::str::FromStr;
 
 use halfrow_protocol::message::BoardNature;
 use serde::{Deserialize, Serialize};
+
+/// What a target begins with that names a recording.
+const RECORDING: &str = "replay:";
 
 /// A target string split into its parts, which are not looked up yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,8 +93,8 @@ impl FromStr for Target {
     type Err = TargetError;
 
     fn from_str(text: &str) -> Result<Self, TargetError> {
-        let mut pieces = text.split(',');
-        let board = pieces.next().unwrap_or_default();
+        let ends = if text.starts_with(RECORDING) { None } else { text.split_once(',') };
+        let (board, options) = ends.map_or((text, None), |(board, options)| (board, Some(options)));
         let (kind, address) = match board.split_once(':') {
             Some((kind, address)) => (kind, Some(address.to_owned())),
             None => (board, None),
@@ -99,7 +102,9 @@ impl FromStr for Target {
         if kind.is_empty() {
             return Err(TargetError::Empty);
         }
-        let options = pieces
+        let options = options
+            .into_iter()
+            .flat_map(|options| options.split(','))
             .map(str::trim_start)
             .map(|option| match option.split_once('=') {
                 Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
@@ -134,6 +139,16 @@ mod tests {
         assert_eq!("mock".parse::<Target>().unwrap().to_string(), "mock");
         assert_eq!("mock, latency=12".parse::<Target>(), "mock,latency=12".parse());
         assert_eq!("tcp:host:3001".parse::<Target>().unwrap().address.as_deref(), Some("host:3001"));
+    }
+
+    #[test]
+    fn the_name_of_a_recording_is_all_that_follows() {
+        for name in ["night, 2.rec", "a,b=1.rec", "a:b", ","] {
+            let text = format!("replay:{name}");
+            let target: Target = text.parse().unwrap();
+            assert_eq!((target.address.as_deref(), &target.options[..]), (Some(name), &[][..]));
+            assert_eq!(target.to_string(), text);
+        }
     }
 
     #[test]

@@ -93,6 +93,12 @@ fn an_address_that_is_none_is_a_wrong_call() {
     let port = busy.local_addr().unwrap().port().to_string();
     refused_with(3, &folder, &["serve", "--tcp", &port], "cannot be made; choose another one");
     refused(&folder, &["serve", "--link", "missing/board"], "the link missing/board cannot be made");
+    // The target that it prints could not be given to anybody.
+    refused(
+        &folder,
+        &["serve", "--link", "board,1"],
+        "no target can name board,1, since a comma ends a path there; choose another name with --link",
+    );
 }
 
 #[test]

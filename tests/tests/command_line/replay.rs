@@ -188,7 +188,19 @@ fn what_is_no_recording_is_refused() {
     refused(&folder, &replay("replay"), "write replay:FILE");
     refused(&folder, &replay("replay:"), "write replay:FILE");
     assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
-    refused(&folder, &replay("replay:run.rec,speed=1"), "takes no option");
+    refused(&folder, &replay("replay:run.rec,speed=1"), "the recording run.rec,speed=1 cannot be read");
+}
+
+/// A recording has no options, so no comma ends its name.
+#[test]
+fn a_recording_with_commas_in_its_name_is_judged_again() {
+    for name in ["night, 2.rec", "a,b=1.rec"] {
+        let folder = Folder::new();
+        assert_eq!(folder.halfrow(small("verify", &["--record", name])).code, Some(0));
+        let again = folder.halfrow(["verify", "--json", "--board", &format!("replay:{name}")]);
+        assert_eq!(again.code, Some(0), "{}", again.stderr);
+        assert_eq!(again.json()["board"]["target"], format!("replay:{name}"));
+    }
 }
 
 /// Its frames would fill the memory before any of them is asked for.

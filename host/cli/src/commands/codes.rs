@@ -82,6 +82,7 @@ codes::codes! {
     ServeError {
         Door [what] => "serving-place-not-opened",
         Exists (path) => "serving-link-exists",
+        Unnameable (path) => "serving-link-unnameable",
         Board => "served-board-failed",
     }
     PaperError {

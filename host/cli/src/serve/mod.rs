@@ -49,6 +49,9 @@ pub enum ServeError {
     /// The link to the served board cannot be made, because something of that name exists.
     #[error("{0} is there already; remove it, or choose another name with --link")]
     Exists(std::path::PathBuf),
+    /// The link to the served board would have a name that no target can have.
+    #[error("no target can name {0}, since a comma ends a path there; choose another name with --link")]
+    Unnameable(std::path::PathBuf),
     /// The board that was being served is gone.
     #[error("the board that was served is gone; check its cable and power, then serve it again")]
     Board(#[source] LinkError),
@@ -59,7 +62,7 @@ impl ServeError {
     #[must_use]
     pub fn exit(&self) -> Exit {
         match self {
-            Self::Exists(_) => Exit::Usage,
+            Self::Exists(_) | Self::Unnameable(_) => Exit::Usage,
             Self::Door { .. } | Self::Board(_) => Exit::Error,
         }
     }

@@ -1,6 +1,7 @@
 //! A pseudo-terminal, with a chosen name if wanted.
 
 use std::os::fd::{AsRawFd, RawFd};
+use std::os::unix::ffi::OsStrExt as _;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -86,8 +87,11 @@ impl Name {
     /// that is gone, or to `target`, since the system gives the number of such a terminal to the next one.
     ///
     /// # Errors
-    /// [`ServeError`] when anything else has that name, or the link cannot be made.
+    /// [`ServeError`] when anything else has that name, no target can have it, or the link cannot be made.
     pub fn link(path: &Path, target: &Path) -> Result<Self, ServeError> {
+        if path.as_os_str().as_bytes().contains(&b',') {
+            return Err(ServeError::Unnameable(path.to_owned()));
+        }
         let door = |source| ServeError::Door { what: format!("the link {}", path.display()), source };
         // What is away for a moment, as on a disk that is not mounted, is somebody's.
         let is_gone = |led: &Path| led.starts_with(TERMINALS) && !path.exists();

@@ -62,7 +62,6 @@ codes! {
         AddressMissing [kind, form] => "target-address-missing",
         Option [kind, option, known] => "target-option-unknown",
         OtherBoard [option, board, meaning] => "target-option-contradicts-board",
-        NoOption [kind, option] => "target-takes-no-option",
         Options [board, target] => "target-options-wrong",
         Pace [key, value] => "target-pace-wrong",
         UnknownFront (front) => "simulation-unknown",
