@@ -78,7 +78,7 @@ fn a_wrong_signature_fails_and_what_does_not_come_again_is_said() {
         panic!("{}", report.headline())
     };
     assert!(report.headline().contains("repeated by itself, it was right"), "{}", report.headline());
-    assert_eq!(report.suspects[0].defect, Defect::SeenAtSpeed { row: None, samples: 0, bits: Vec::new() });
+    assert!(matches!(report.suspects[0].defect, Defect::SeenAtSpeed { row: None, lost: None, .. }));
     assert!(report.suspects[0].designer().starts_with("If streamed frames"), "{:?}", report.suspects);
 }
 
@@ -270,8 +270,8 @@ fn a_frame_that_cannot_be_streamed_again_is_said_to_be_seen_at_speed_alone() {
         panic!("{}", report.headline())
     };
     assert_eq!(streamed, Streamed::RowLost { row: 0 });
-    let places: Vec<_> = report.suspects.iter().map(|suspect| &suspect.defect).collect();
-    assert!(matches!(places[..], [Defect::SeenAtSpeed { row: Some(0), samples: 1.., .. }, ..]), "{places:?}");
+    let first = &report.suspects[0].defect;
+    assert!(matches!(first, Defect::SeenAtSpeed { row: Some(0), lost: Some(0), .. }), "{first:?}");
 }
 
 #[test]

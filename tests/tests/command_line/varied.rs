@@ -71,3 +71,22 @@ fn a_recording_that_does_not_speak_of_variations_has_none() {
     let ended = folder.halfrow(["verify", "--json", "--board", "replay:run.rec"]);
     assert_eq!((ended.code, ended.json()["frames"].as_array().unwrap().len()), (Some(0), 16));
 }
+
+/// The frames that were streamed are smaller, so only frames at speed have such a row.
+#[test]
+fn a_row_that_is_lost_row_by_row_as_well_is_no_matter_of_timing() {
+    let size = ["verify", "-q", "--width", "128", "--height", "32", "--radius", "60"];
+    let ended = halfrow(size.into_iter().chain(["--board", "mock,fault=lost-row,row=40"]));
+    assert_eq!(ended.code, Some(1), "{}", ended.stdout);
+    let words = ended.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    for said in [
+        "sent row by row, row 40 of it did not come back",
+        "suspect a fault at full speed, of a board that does not bring row 40 back row by row either",
+        "Next: Check the row banks and the row player",
+    ] {
+        assert!(words.contains(said), "{said}: {}", ended.stdout);
+    }
+    for said in ["could not be compared", "timing of the datapath"] {
+        assert!(!words.contains(said), "{said}: {}", ended.stdout);
+    }
+}

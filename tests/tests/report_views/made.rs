@@ -47,7 +47,7 @@ pub(crate) fn pass() -> Report {
 
 /// A frame that was wrong at speed, and the suspects.
 fn wrong_at_speed() -> (Finding, Vec<Suspect>) {
-    let defect = Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] };
+    let defect = Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11], lost: None };
     let finding = Finding::DiffersAtSpeed {
         wrong: 1,
         frames: 2777,

@@ -375,7 +375,7 @@ fn without_share() -> impl Iterator<Item = Suspect> {
         Defect::RowsChangedOnEntry { rows: 9, first: 3, frame: 2, flipped: Some(FLIPPED) },
         Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
         Defect::SignatureWrong { row: 3 },
-        Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
+        Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11], lost: None },
         Defect::LeastBlankingTooSmall(NamedBlanking { named: 8, right: 900 }),
     ]
     .into_iter()

@@ -268,6 +268,10 @@ pub enum Defect {
         samples: usize,
         /// Bits of them that do.
         bits: Vec<u32>,
+        /// The row that did not come back when such a frame was sent row by row; none if none was sent, or in a report of a
+        /// version that did not tell.
+        #[serde(default)]
+        lost: Option<usize>,
     },
     /// No known defect explains most of the differences; the suspect says where they lie.
     NoneKnown {

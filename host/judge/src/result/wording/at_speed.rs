@@ -77,6 +77,21 @@ pub(super) fn seen_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     }
 }
 
+pub(super) fn row_lost_too(row: Option<usize>, samples: usize, bits: &[u32], lost: usize) -> Words {
+    let (bits, kept) = seen(row, samples, bits);
+    Words {
+        part: "row player or timing",
+        place: format!("a fault at full speed, of a board that does not bring row {lost} back row by row either{bits}"),
+        defect: format!(
+            "when the frame that was wrong at full speed was sent row by row, row {lost} of it did not come back{kept}"
+        ),
+        designer: "Check the row banks and the row player with frames of this size, these tables and this row: the board may lose \
+                   it inside, at any clock."
+            .to_owned(),
+        technician: TIMING,
+    }
+}
+
 /// The bits in which a path was seen to fail, and the row that was kept.
 fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
     let Some(row) = row else { return (String::new(), String::new()) };

@@ -172,7 +172,12 @@ fn words(defect: &Defect) -> Words {
         Defect::ContentWrong { row, kind, made } => content::wrong(*row, *kind, *made),
         Defect::SignatureWrong { row } => content::signature_wrong(*row),
         Defect::OnlyAtSpeed { row, samples, bits } => at_speed::only_at_speed(*row, *samples, bits),
-        Defect::SeenAtSpeed { row, samples, bits } => at_speed::seen_at_speed(*row, *samples, bits),
+        Defect::SeenAtSpeed { row, samples, bits, lost: None } => {
+            at_speed::seen_at_speed(*row, *samples, bits)
+        }
+        Defect::SeenAtSpeed { row, samples, bits, lost: Some(lost) } => {
+            at_speed::row_lost_too(*row, *samples, bits, *lost)
+        }
         Defect::StaleTables { rows, frames } => places::stale(rows, frames),
         Defect::RowsExchanged { source, mostly } => places::exchanged(*source, *mostly),
         Defect::RowShifted { columns } => places::shifted(*columns),

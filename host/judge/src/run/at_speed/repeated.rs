@@ -315,7 +315,10 @@ pub(super) type TrappedRow<'a> = (usize, &'a [u16], &'a [u16]);
 fn at_speed(streamed: Streamed, kept: Option<TrappedRow<'_>>) -> Option<Suspect> {
     let (row, (samples, bits)) = (kept.map(|(row, ..)| row), kept.map(changed).unwrap_or_default());
     let defect = match streamed {
-        Streamed::NotTried | Streamed::RowLost { .. } => Defect::SeenAtSpeed { row, samples, bits },
+        Streamed::NotTried => Defect::SeenAtSpeed { row, samples, bits, lost: None },
+        Streamed::RowLost { row: lost } => {
+            Defect::SeenAtSpeed { row, samples, bits, lost: Some(lost.into()) }
+        }
         Streamed::Right => Defect::OnlyAtSpeed { row, samples, bits },
         Streamed::Wrong => return None,
     };
