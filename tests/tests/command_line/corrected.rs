@@ -151,7 +151,12 @@ fn what_does_not_fit_the_board_is_refused() {
         small("correct", &["builtin:black", "-o", "out.pgm", "--kernel", kernel, "--board", board])
     };
     refused(&folder, &on("mock,max-width=64", "linear"), "frames of 128 x 16 do not fit the board");
-    refused(&folder, &on("mock,depths=8", "linear"), "the board has no 12-bit samples");
+    refused(
+        &folder,
+        &on("mock,depths=8+10", "linear"),
+        "the board has no 12-bit samples, only those of 8 or 10 bits; name the bits (--bits) of one of these, or use tables of \
+         such a depth",
+    );
     refused(&folder, &on("mock,taps=five", "keys"), "the kernel needs seven taps");
 }
 

@@ -140,7 +140,7 @@ codes! {
     Misfit {
         Datapath => "board-of-other-datapath",
         Size [width, height, most_width, most_height] => "frames-too-large-for-board",
-        Depth [bits] => "depth-not-of-board",
+        Depth [bits, taken] => "depth-not-of-board",
         NoGrids => "board-without-grids",
         GridEntries [entries, most] => "grid-too-large-for-board",
         GridPitch [pitch, taken] => "grid-of-other-pitch",

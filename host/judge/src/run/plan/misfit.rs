@@ -1,6 +1,6 @@
 //! Whether a board can take what a plan uploads.
 
-use halfrow_model::{CorrectError, GridShape, Kernel, TableError, TableSet, Taps};
+use halfrow_model::{BitDepth, CorrectError, GridShape, Kernel, TableError, TableSet, Taps};
 use halfrow_protocol::message::{BoardNature, UnknownDatapath};
 
 use super::within::WithinError;
@@ -31,10 +31,16 @@ pub enum Misfit {
         remedy: String,
     },
     /// The board does not take samples of the tables' depth.
-    #[error("the board has no {bits}-bit samples; use tables of another depth")]
+    #[error(
+        "the board has no {bits}-bit samples, only those of {} bits; name the bits of one of these, or use tables of such a \
+         depth",
+        .taken.iter().map(u32::to_string).collect::<Vec<_>>().join(" or ")
+    )]
     Depth {
         /// Bits a sample.
         bits: u32,
+        /// Those that the board takes.
+        taken: Vec<u32>,
     },
     /// The tables are a grid, but the board takes only one factor per row.
     #[error(
@@ -124,9 +130,10 @@ pub fn check_fit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities
         }
         return Err(Misfit::Size { width, height, most_width, most_height, remedy });
     }
-    let bits = geometry.depth().bits();
-    if !capabilities.sample_depths().has(bits as u8) {
-        return Err(Misfit::Depth { bits });
+    let (bits, depths) = (geometry.depth().bits(), capabilities.sample_depths());
+    if !depths.has(bits as u8) {
+        let taken = BitDepth::ALL.map(BitDepth::bits).into_iter().filter(|&bits| depths.has(bits as u8));
+        return Err(Misfit::Depth { bits, taken: taken.collect() });
     }
     check_grid(tables, capabilities)?;
     if kernel.taps() == Taps::Seven && capabilities.taps < 7 {
@@ -153,7 +160,7 @@ fn check_grid(tables: &TableSet, capabilities: &Capabilities) -> Result<(), Misf
 
 #[cfg(test)]
 mod tests {
-    use halfrow_model::{BitDepth, Camera, Equidistant, Geometry, Interpolant};
+    use halfrow_model::{Camera, Equidistant, Geometry, Interpolant};
 
     use super::*;
     use crate::run::plan::prices::usual_capabilities;
