@@ -33,9 +33,9 @@ pub(super) struct Generations(Vec<u32>);
 
 impl Generations {
     /// Gives the database the newest of them.
-    fn give(&self, folder: &Folder, writer: &mut dyn Database) -> Result<(), StoreError> {
+    fn give(&self, writer: &mut dyn Database) -> Result<(), DatabaseError> {
         let newest = self.0.last().copied().unwrap_or_default();
-        writer.batch(&format!("PRAGMA user_version = {newest}")).map_err(|source| refused(folder, source))
+        writer.batch(&format!("PRAGMA user_version = {newest}"))
     }
 }
 
@@ -106,7 +106,7 @@ impl Opened {
         if let [known] = self.known.0[..] {
             let both = Generations(vec![known, chosen()?]);
             note(folder, lock, &both)?;
-            both.give(folder, writer)?;
+            both.give(writer).map_err(|source| refused(folder, source))?;
             // Only now that the database has the new number: with two known, the log is folded.
             self.known = both;
         }
@@ -278,8 +278,15 @@ pub(super) fn begin(
     writer: &mut dyn Database,
     known: Generations,
 ) -> Result<Opened, StoreError> {
+    let before = noted(folder);
     note(folder, lock, &known)?;
-    known.give(folder, writer)?;
+    if let Err(source) = known.give(writer) {
+        // Without room not even the log has the number. After any other error it may, though SQLite does not count it.
+        if source.is_full() {
+            note(folder, lock, &before)?;
+        }
+        return Err(refused(folder, source));
+    }
     let file = File::open(folder.database()).map_err(|source| folder.refused(source))?;
     let mut opened = Opened::new(file, known);
     opened.settle(folder, lock, writer)?;

@@ -85,6 +85,11 @@ impl DatabaseError {
         matches!(code, Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked))
     }
 
+    /// Whether a file could not grow.
+    pub(crate) fn is_full(&self) -> bool {
+        matches!(self, Self::Sqlite(error) if error.sqlite_error_code() == Some(ErrorCode::DiskFull))
+    }
+
     /// Whether the file could not be read, as opposed to another one that was to be written from it.
     pub(crate) fn is_of_reading(&self) -> bool {
         let code = if let Self::Sqlite(error) = self { error.sqlite_error() } else { None };

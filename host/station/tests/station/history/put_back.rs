@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{End, Made, Run};
-use crate::common::{folder, program, query};
+use crate::common::{Did, folder, program, query};
 
 /// Puts a file back as `mv`, `rsync` and most programs do: another file gets the name.
 fn renamed_to(from: &Path, to: &Folder) {
@@ -334,6 +334,26 @@ fn a_start_that_fails_leaves_the_log_that_it_found() {
     let refused = Store::open(&Folder::new(left.path())).unwrap_err().to_string();
     assert!(refused.contains("99"), "{refused}");
     assert!(files() == before, "it was folded");
+}
+
+/// A service is started again every second: what such a start noted would add up.
+#[test]
+fn a_start_on_a_full_disk_notes_nothing_for_the_next_one() {
+    let (made, ..) = in_its_second_session();
+    let left = killed(&made);
+    let noted = || fs::read_to_string(left.path().join("station.lock")).unwrap();
+    let before = noted();
+    for _ in 0..2 {
+        let mut full = Command::new("strace");
+        full.args(["-qq", "-o", "/dev/null", "-e", "inject=pwrite64:error=ENOSPC", "-P"]);
+        full.arg(left.path().join("station.db-wal")).arg(program()).args(["prune", "--operator", "weber"]);
+        let did = Did::from(full.arg("--data").arg(left.path()).output().unwrap());
+        assert!(did.code == Some(3) && did.complained.contains("refuses a new number"), "{did:?}");
+        assert!(!did.complained.contains("all of station.db is looked at"), "{did:?}");
+        assert_eq!(noted(), before);
+    }
+    assert_eq!(did(&left, &["prune", "--operator", "weber"]).0, 0);
+    assert_eq!(units(left.path()), ["S1", "S2"]);
 }
 
 /// It may have been left by a program that did not write down which log it had.
