@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     results: Results,
     #[command(flatten)]
     filtered: Filtered,
-    /// How many at most
+    /// How many at most, 1 to 1000
     #[arg(long, value_name = "RUNS", default_value = "50", value_parser = counted::<u32>(1, Some(u64::from(MOST))))]
     limit: u32,
     /// Continue after this place, with which the page before ended

@@ -89,7 +89,7 @@ fn with_unknown(Copied { unknown, .. }: &Copied) -> String {
 pub(super) struct Prune {
     #[command(flatten)]
     data: Data,
-    /// Remove the evidence of runs that ended longer ago, too
+    /// Remove the evidence of runs that ended longer ago, too; 1 or more
     #[arg(long, value_name = "DAYS", value_parser = counted::<u32>(1, None))]
     older_than: Option<u32>,
     /// Your name, which the audit keeps

@@ -55,7 +55,7 @@ enum Action {
     },
     /// Remove the steps and measurements of old runs, which their records have; runs, records and what is counted are kept for ever
     Prune {
-        /// Of runs that began longer ago
+        /// Of runs that began longer ago; 1 or more
         #[arg(long, value_name = "DAYS", value_parser = counted::<u32>(1, None))]
         older_than: u32,
         #[command(flatten)]
