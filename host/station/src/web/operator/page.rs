@@ -12,6 +12,7 @@ use crate::history::Period;
 use crate::history::rate::Rate;
 use crate::history::yields::{By, Wanted, Yields, yields};
 use crate::store::{SINK_OF_PLANT, Snapshot, Unsent};
+use crate::web::history::show;
 use crate::web::layout::{Here, Page};
 use crate::web::live::Now;
 use crate::web::routes::Who;
@@ -70,6 +71,7 @@ pub(super) async fn still(State(app): State<App>, visit: Visit) -> Result<Respon
     let content = html! {
         section #station {
             h1.heard { (visit.say("nav.lanes")) }
+            (untold(&visit))
             (floor(&visit, &now))
             footer #today { (or_why(today)) " · " (live_lamp(&visit)) }
         }
@@ -98,11 +100,19 @@ fn shape_of(lanes: usize) -> usize {
     [1, 2, 3, 4, 8].into_iter().find(|&most| lanes <= most).unwrap_or(16)
 }
 
+/// Why it is not known who looks, which is the reason that nobody can do anything.
+fn untold(visit: &Visit) -> Markup {
+    html! {
+        @if let Some(why) = &visit.untold { p.badge { (show::told(&visit.words.tell(why))) } }
+    }
+}
+
 /// Where scans appear. It is also there while nobody is logged in, because badges are scanned.
 fn scan_box(visit: &Visit, now: &Now, answer: Option<&ScanReply>) -> Markup {
     let class = answer.map_or("", |answer| if answer.is_taken { "taken" } else { "refused" });
     html! {
-        @if visit.can_log_in && !visit.may(Who::Operator) {
+        (untold(visit))
+        @if visit.can_log_in && !visit.may(Who::Operator) && visit.untold.is_none() {
             p.badge { strong { (visit.say("scan.badge")) } " " a href="/login" { (visit.say("scan.login")) } }
         }
         div.scan {

@@ -27,11 +27,13 @@ pub(super) fn said(visit: &Visit, word: Word) -> &'static str {
 pub(super) fn does(visit: &Visit, state: &LaneState, is_asked: bool) -> Option<&'static str> {
     // While nobody is logged in, scans are badges.
     let is_barred = visit.can_log_in && !visit.may(Who::Operator);
+    // A badge is refused while it is not known who may.
+    let badge = visit.untold.is_none().then(|| visit.say("does.badge"));
     Some(match state.state {
         Word::Out if is_asked => return None,
         Word::Error if is_asked => visit.say("does.unjudged"),
-        Word::Ready if is_barred => visit.say("does.badge"),
-        Word::Waiting if is_barred && state.can.contains(&Act::Start) => visit.say("does.badge"),
+        Word::Ready if is_barred => return badge,
+        Word::Waiting if is_barred && state.can.contains(&Act::Start) => return badge,
         Word::Empty => visit.say("does.empty"),
         Word::Ready => visit.say("does.ready"),
         Word::Waiting if state.can.contains(&Act::Start) => visit.say("does.start"),

@@ -1,6 +1,6 @@
 //! The files of who may act and of who may read.
 
-use std::thread;
+use std::{fs, thread};
 
 use super::station::Station;
 
@@ -47,4 +47,30 @@ fn a_station_without_access_says_by_a_code_that_it_has_no_users_and_no_tokens() 
         assert_eq!(did.status.code(), Some(2), "{said}");
         assert!(said.contains(&format!("halfrow explain {code}")), "{said}");
     }
+}
+
+/// A badge that is scanned meanwhile is refused, so none is asked for.
+#[test]
+fn while_people_cannot_be_read_the_lanes_say_so_instead_of_asking_for_a_badge() {
+    let station = Station::with(1, "[web]\nlisten = \"127.0.0.1:0\"\n[access]\nusers = \"users.toml\"");
+    assert!(station.user(&["add", "Weber"], "A-0017\n").status.success());
+    let serving = station.serve();
+    let mut weber = serving.here();
+    weber.learn(&weber.post("/login", &[("badge", "A-0017")]).send());
+    weber.get("/").until("lane ready");
+    let (file, people) = (station.path("users.toml"), fs::read(station.path("users.toml")).unwrap());
+    fs::write(&file, "no table").unwrap();
+    for path in ["/", "/still"] {
+        let page = weber.get(path).send().text();
+        let told = page.split_once("<p class=\"badge\">").map(|(_, rest)| rest.split("</p>").next().unwrap());
+        assert!(told.is_some_and(|told| told.contains("users.toml")), "{path}: {page}");
+        let asked = page.contains("<p class=\"does\">") || page.contains("Scan your badge");
+        assert!(page.contains("lane ready") && !asked, "{path}: {page}");
+    }
+    let mut follows = weber.get("/live").lines();
+    assert!(follows.next().is_some_and(|status| status.contains("200")));
+    fs::write(&file, people).unwrap();
+    // Then the page is loaded anew.
+    follows.for_each(drop);
+    assert!(weber.get("/").send().text().contains("<p class=\"does\">scan its label</p>"));
 }
