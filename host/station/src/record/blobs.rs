@@ -107,14 +107,10 @@ impl Blobs {
         let hash = sha256([bytes]);
         let path = self.path(&hash);
         let folder = path.parent().unwrap_or(&self.folder);
-        if !folder.is_dir() {
-            made_within(folder).map_err(|source| BlobError::Folder { path: folder.to_owned(), source })?;
-            synced(&self.folder)?;
-        }
+        made_within(folder).map_err(|source| BlobError::Folder { path: folder.to_owned(), source })?;
         let written = Aside::written(&path, false, |file| file.write_all(bytes));
         match written.and_then(Aside::rename_into_place) {
-            // A run that ended early may have written it, without syncing its name. What no row names is pruned by its age, and
-            // for this run no row names it yet.
+            // What no row names is pruned by its age, and for this run no row names it yet.
             Err(
                 WriteAsideError::Exists { .. }
                 | WriteAsideError::Link { .. }
@@ -126,7 +122,9 @@ impl Blobs {
             }
             written => written?,
         }
+        // A run that ended early may have made either without syncing its name.
         synced(folder)?;
+        synced(&self.folder)?;
         Ok(hash)
     }
 
