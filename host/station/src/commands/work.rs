@@ -64,12 +64,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         aside: Aside::default(),
     };
     let stop = || signal.by();
-    // The plant lends a board again as soon as it has its run.
-    stuck.iter().for_each(|run| work.take_out(&run.lane, &stop));
-    let _sending = Sending::begin(&settings, store)?;
-    let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
-    work.introduce(&introduction, !arguments.once, &stop)?;
-    take_jobs(&work, arguments, at_once, &stop)?;
+    let out = stuck.iter().try_for_each(|run| work.take_out(&run.lane, !arguments.once, &stop));
+    // The plant lends a board again as soon as it has its run, so nothing is sent before the board is out.
+    if stop().is_none() {
+        out?;
+        let _sending = Sending::begin(&settings, store)?;
+        let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
+        work.introduce(&introduction, !arguments.once, &stop)?;
+        take_jobs(&work, arguments, at_once, &stop)?;
+    }
     Ok(signal.by().map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }
 

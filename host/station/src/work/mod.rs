@@ -41,8 +41,6 @@ const OPERATOR: &str = "job";
 const IDLE_MS: u64 = 1_000;
 /// The same while the plant is away, or the station's own store fails.
 const AWAY_MS: u64 = 5_000;
-/// How many times the station tries to tell the plant that a board is out.
-const TRIES_OUT: u32 = 40;
 /// The time between two checks whether a wait is over.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -127,7 +125,14 @@ impl Work<'_> {
         let mut watched = JobWatch { holding: &holding, stop, heard, is_stuck: false };
         let ended = self.run(&claim, &mut watched);
         if watched.is_stuck {
-            self.take_out(&claim.lease.board, stop);
+            let board = &claim.lease.board;
+            if let Err(error) = self.take_out(board, true, stop) {
+                tracing::error!(
+                    "the board {board} is not out, and a process that cannot be killed may still have it; restart this \
+                     computer: {}",
+                    Said::of(&error)
+                );
+            }
         }
         let saved = match ended {
             Ok(saved) => saved,
@@ -180,23 +185,30 @@ impl Work<'_> {
         }
     }
 
-    /// Takes out a board that a process which cannot be killed may still have, so that nobody gets it. The board is held until
-    /// the plant knows, or has been away for some minutes; a program that is to end tries only for a moment.
-    pub(crate) fn take_out(&self, board: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
+    /// Takes out a board that a process which cannot be killed may still have, so that nobody gets it. Waits for a plant that is
+    /// away if it `may_be_away`, until `stop` ends the wait.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant does not know it.
+    pub(crate) fn take_out(
+        &self,
+        board: &str,
+        may_be_away: bool,
+        stop: &dyn Fn() -> Option<StoppedBy>,
+    ) -> Result<(), StoreError> {
         let station = &self.worker.station;
         let why = Reason::of_program(&format!(
             "a process of station {station} may still have it, and cannot be killed; restart that computer first"
         ));
         let by = By { operator: OPERATOR, reason: &why };
-        for _ in 0..TRIES_OUT {
+        loop {
             match self.plant.ask(|plant| plant.take_out(board, by)) {
-                Ok(_) => return,
-                Err(error) => {
+                Err(error) if may_be_away && error.may_pass() && stop().is_none() => {
                     tracing::warn!("the board {board} is not out yet ({}): {}", &*why, Said::of(&error));
+                    rest(AWAY_MS, stop);
                 }
+                told => return told.map(drop),
             }
-            rest(AWAY_MS, stop);
-            thread::sleep(LOOK);
         }
     }
 

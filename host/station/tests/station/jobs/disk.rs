@@ -53,7 +53,7 @@ impl Station {
 }
 
 /// `halfrow-station work`
-pub(super) struct Worker(pub(super) Child);
+pub(crate) struct Worker(pub(crate) Child);
 
 impl Worker {
     pub(super) fn end(mut self) {

@@ -5,7 +5,7 @@ mod boards;
 mod changed;
 pub(crate) mod claims;
 mod commands;
-mod disk;
+pub(crate) mod disk;
 mod rate;
 mod sent;
 mod shift;
@@ -103,8 +103,13 @@ pub(crate) fn run_out(server: &Server) {
 
 /// The settings of a worker of this name in `folder`.
 fn settings(server: &Server, folder: &Path, name: &str) -> PathBuf {
+    settings_of(&server.url(), folder, name)
+}
+
+/// The same with the plant at `url`.
+pub(crate) fn settings_of(url: &str, folder: &Path, name: &str) -> PathBuf {
     std::fs::write(folder.join("plan.toml"), PLAN).unwrap();
-    let plant = crate::common::plant_settings(&server.url());
+    let plant = crate::common::plant_settings(url);
     let text = format!(
         "schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n{plant}[work]\nplans = [\"plan.toml\"]\n"
     );
