@@ -1,6 +1,6 @@
 //! What a lane wrote down, as evidence.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::Path;
 
@@ -26,6 +26,8 @@ pub(super) fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, S
 /// Stores what a lane wrote down, without what cannot be read, which would keep the run open for ever. The spool stays then, for
 /// whoever can read it.
 pub(super) fn attached_as_can_be(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
+    // What an earlier try could not read may be read now.
+    let _ = fs::remove_file(spool.join(UNREAD));
     attached_but(blobs, spool, &|unread| {
         tracing::warn!(
             "a record goes without what its lane wrote down: {}; {} stays for whoever can read it",

@@ -96,6 +96,26 @@ fn a_run_that_is_found_open_is_closed_without_the_evidence_that_cannot_be_read()
     assert!(spool.join("lane.log").exists());
 }
 
+/// The disk that is in trouble may take the result only later, when all can be read again.
+#[test]
+fn a_spool_of_which_all_was_read_in_the_end_does_not_stay() {
+    let mut made = Made::new();
+    let spool = made.folder().spool(&made.begin(&Run::of("CAT00001", End::Open)).0.id);
+    let log = spool.join("lane.log");
+    std::fs::create_dir_all(&log).unwrap();
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    let full = "CREATE TRIGGER full BEFORE UPDATE ON run BEGIN SELECT RAISE(ABORT, 'full'); END";
+    database.execute_batch(full).unwrap();
+    assert!(recover(&mut made.store).unwrap().unclosed.is_some());
+    assert!(spool.join("unread").exists(), "the control");
+    database.execute_batch("DROP TRIGGER full").unwrap();
+    std::fs::remove_dir(&log).unwrap();
+    std::fs::write(&log, "what was logged\n").unwrap();
+    let recovered = recover(&mut made.store).unwrap().closed;
+    assert_eq!(recovered[0].record.attachments.len(), 1);
+    assert!(!spool.exists());
+}
+
 #[test]
 fn a_run_that_cannot_be_closed_keeps_no_other_open() {
     let mut made = Made::new();
