@@ -1,27 +1,33 @@
 //! A plant that accepts what it is sent, and does not answer.
 
+use std::fs;
 use std::io::{Read as _, Write as _};
 use std::net::{Shutdown, TcpListener, TcpStream};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
 use halfrow_station::outbox::{Standing, round};
 use halfrow_station::store::{PlantAddress, PlantLink, SINK_OF_PLANT, SharedStore, Turn, Waiter};
 use halfrow_station::work::{Held, Holding};
 
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
 use super::sent::sink;
 use super::server::Server;
-use crate::common::until;
+use crate::common::{folder, program, until, until_found};
 use crate::history::made::{End, Made, Run};
-use crate::jobs::shared;
+use crate::jobs::disk::Worker;
+use crate::jobs::{settings_of, shared};
 
 /// A relay in front of a server.
 struct Way {
     port: u16,
     is_silent: Arc<AtomicBool>,
-    /// Whether something was sent while it was silent.
-    has_swallowed: Arc<AtomicBool>,
+    /// Over how many connections something was sent while it was silent.
+    swallowed: Arc<AtomicUsize>,
 }
 
 impl Way {
@@ -30,19 +36,24 @@ impl Way {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let is_silent = Arc::new(AtomicBool::new(false));
-        let has_swallowed = Arc::new(AtomicBool::new(false));
-        let (told, notes) = (Arc::clone(&is_silent), Arc::clone(&has_swallowed));
+        let swallowed = Arc::new(AtomicUsize::new(0));
+        let (told, notes) = (Arc::clone(&is_silent), Arc::clone(&swallowed));
         thread::spawn(move || {
             for client in listener.incoming() {
                 let (client, server) = (client.unwrap(), TcpStream::connect(("127.0.0.1", to)).unwrap());
                 for (from, to) in [(&client, &server), (&server, &client)] {
                     let (from, to) = (from.try_clone().unwrap(), to.try_clone().unwrap());
-                    let (is_silent, has_swallowed) = (Arc::clone(&told), Arc::clone(&notes));
-                    thread::spawn(move || carry(from, to, &is_silent, &has_swallowed));
+                    let (is_silent, swallowed) = (Arc::clone(&told), Arc::clone(&notes));
+                    thread::spawn(move || carry(from, to, &is_silent, &swallowed));
                 }
             }
         });
-        Self { port, is_silent, has_swallowed }
+        Self { port, is_silent, swallowed }
+    }
+
+    /// The address of the server by this relay.
+    fn url(&self) -> String {
+        format!("postgres://postgres@127.0.0.1:{}/plant", self.port)
     }
 
     fn is_silent(&self, is_silent: bool) {
@@ -51,11 +62,11 @@ impl Way {
 }
 
 /// Forwards bytes until it is to be silent; then this connection stays as it is for ever.
-fn carry(mut from: TcpStream, mut to: TcpStream, is_silent: &AtomicBool, has_swallowed: &AtomicBool) {
+fn carry(mut from: TcpStream, mut to: TcpStream, is_silent: &AtomicBool, swallowed: &AtomicUsize) {
     let mut bytes = vec![0; 65_536];
     while let Ok(read @ 1..) = from.read(&mut bytes) {
         if is_silent.load(Ordering::SeqCst) {
-            has_swallowed.store(true, Ordering::SeqCst);
+            swallowed.fetch_add(1, Ordering::SeqCst);
             loop {
                 thread::park();
             }
@@ -71,7 +82,6 @@ fn carry(mut from: TcpStream, mut to: TcpStream, is_silent: &AtomicBool, has_swa
 fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
     let server = Server::prepared();
     let way = Way::to(server.port());
-    let url = format!("postgres://postgres@127.0.0.1:{}/plant", way.port);
     let mut made = Made::new();
     made.store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
     for (number, serial) in (1..).zip(["S1", "S2"]) {
@@ -82,7 +92,7 @@ fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
         "UPDATE outbox SET next_ms = (unixepoch() + 240) * 1000 WHERE subject = (SELECT max(id) FROM run)";
     assert_eq!(database.execute(one_waits, []).unwrap(), 1);
     let due = || database.execute("UPDATE outbox SET next_ms = 0 WHERE done_ms IS NULL", []).unwrap();
-    let address = PlantAddress::new(&url, None, None).unwrap();
+    let address = PlantAddress::new(&way.url(), None, None).unwrap();
     let mut sink = sink("station 7", &mut made.store, address);
     let (_folder, store) = made.parts();
     let store = SharedStore::new(store);
@@ -107,14 +117,13 @@ fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
 fn a_board_is_still_held_when_the_connection_that_renews_it_is_dead() {
     let (server, mut plant) = shared(1);
     let way = Way::to(server.port());
-    let url = format!("postgres://postgres@127.0.0.1:{}/plant", way.port);
-    let link = PlantLink::new(PlantAddress::new(&url, None, None).unwrap());
+    let link = PlantLink::new(PlantAddress::new(&way.url(), None, None).unwrap());
     let waiter = Waiter::new("mock", "weber", "12").unwrap();
     let turn = link.ask(|plant| plant.wait(&waiter)).unwrap();
     let Turn::Held(lease) = turn else { panic!("it is free") };
     let holding = Holding::begin(link, Held::Board(lease.clone()));
     way.is_silent(true);
-    until("a renewal", || way.has_swallowed.load(Ordering::SeqCst));
+    until("a renewal", || way.swallowed.load(Ordering::SeqCst) > 0);
     way.is_silent(false);
     let renewed_until = || server.rows("SELECT until_ms FROM board")[0][0].parse::<i64>().unwrap();
     let before = renewed_until();
@@ -123,4 +132,25 @@ fn a_board_is_still_held_when_the_connection_that_renews_it_is_dead() {
     assert!(plant.renew(&lease).unwrap());
     holding.end();
     assert!(!plant.renew(&lease).unwrap(), "it was given back");
+}
+
+/// One after the other, they would all have to wait for an answer before the station could end.
+#[test]
+fn the_hands_of_a_station_do_not_wait_for_each_other_s_answers() {
+    const HANDS: usize = 16;
+    let (server, _plant) = shared(0);
+    let way = Way::to(server.port());
+    let folder = folder();
+    let path = settings_of(&way.url(), folder.path(), "12");
+    fs::write(&path, fs::read_to_string(&path).unwrap() + &format!("at_once = {HANDS}\n")).unwrap();
+    let mut call = Command::new(program());
+    let mut worker =
+        Worker(call.args(["work", "--settings"]).arg(path).stderr(Stdio::null()).spawn().unwrap());
+    let is_seen = "SELECT 1 FROM station";
+    until("the station", || !server.rows(is_seen).is_empty());
+    way.is_silent(true);
+    until("a question of each", || way.swallowed.load(Ordering::SeqCst) >= HANDS);
+    kill(Pid::from_raw(worker.0.id() as i32), Signal::SIGTERM).unwrap();
+    let ended = until_found("its end", || worker.0.try_wait().unwrap().ok_or("at work"));
+    assert_eq!(ended.code(), Some(143));
 }
