@@ -142,12 +142,14 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
         made => made.map_err(refused)?,
     }
     let copied = fill(&aside).and_then(|copied| {
-        let moved = if is_there { moved_into(&aside, &to) } else { fs::rename(&aside, &to) };
-        moved.map_err(refused)?;
-        synced(if is_there { &to } else { parent }).map_err(StoreError::from)?;
+        if is_there {
+            move_all(&entries(&aside, &to).map_err(refused)?, &to)?;
+        } else {
+            move_all(&[(aside.clone(), to.clone())], parent)?;
+        }
         Ok(copied)
     });
-    if copied.is_err() {
+    if is_there || copied.is_err() {
         // The next attempt names what cannot be removed.
         let _ = fs::remove_dir_all(&aside);
     }
@@ -165,21 +167,31 @@ fn holds_anything(folder: &Path) -> io::Result<bool> {
     Ok(names.iter().any(|name| name != "lost+found" && name != LOCK))
 }
 
-/// Moves what is in `aside` to the folder `to` around it, the database last, because without it nothing is a copy. If
-/// a move fails, the others are undone.
-fn moved_into(aside: &Path, to: &Path) -> io::Result<()> {
-    let mut entries = fs::read_dir(aside)?.collect::<io::Result<Vec<_>>>()?;
+/// What is in `aside`, and where that is to be in the folder `to`. The database is last, because without it nothing is a copy.
+fn entries(aside: &Path, to: &Path) -> io::Result<Vec<(PathBuf, PathBuf)>> {
+    let mut entries = fs::read_dir(aside)?
+        .map(|entry| entry.map(|entry| (entry.path(), to.join(entry.file_name()))))
+        .collect::<io::Result<Vec<_>>>()?;
     let database = Folder::new(aside).database();
-    entries.sort_by_key(|entry| entry.path() == database);
-    for (place, entry) in entries.iter().enumerate() {
-        if let Err(error) = fs::rename(entry.path(), to.join(entry.file_name())) {
-            for moved in &entries[..place] {
-                let _ = fs::rename(to.join(moved.file_name()), moved.path());
-            }
-            return Err(error);
+    entries.sort_by_key(|(from, _)| *from == database);
+    Ok(entries)
+}
+
+/// Moves each of these to its new place in `folder`, and brings their names there to the disk. If that fails, all are moved back.
+fn move_all(moves: &[(PathBuf, PathBuf)], folder: &Path) -> Result<(), CopyError> {
+    let mut moved = 0;
+    let each = moves.iter().try_for_each(|(from, to)| {
+        fs::rename(from, to).map_err(|source| CopyError::Io { path: folder.to_owned(), source })?;
+        moved += 1;
+        Ok(())
+    });
+    let done = each.and_then(|()| Ok(synced(folder).map_err(StoreError::from)?));
+    if done.is_err() {
+        for (from, to) in moves[..moved].iter().rev() {
+            let _ = fs::rename(to, from);
         }
     }
-    fs::remove_dir(aside)
+    done
 }
 
 /// The faults for which [`restore`] refuses the copy in `folder`. A copy that has lost runs is otherwise as it was

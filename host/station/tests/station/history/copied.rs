@@ -1,7 +1,7 @@
 //! Copies of a station that is not as it should be, and on a disk that is not.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use halfrow_station::kept::{backup, restore};
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{End, Made, Run};
-use crate::common::{Did, program, query};
+use crate::common::{Did, check, program, query};
 
 /// A FAIL with evidence, the path of that within a station's folder, and a place for copies.
 fn failed() -> (Made, PathBuf, TempDir) {
@@ -59,4 +59,55 @@ fn a_copy_without_room_names_the_disk_that_is_full() {
     assert!(did.complained.contains(place.path().to_str().unwrap()), "{did:?}");
     assert!(!did.complained.contains(made.as_ref().to_str().unwrap()), "{did:?}");
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0, "what was begun is removed");
+}
+
+/// `restore` from `copy` to `to` while the disk refuses this call.
+fn restored(copy: &Path, to: &Path, refused: &str) -> Did {
+    let mut call = Command::new("strace");
+    call.args(["-qq", "-o", "/dev/null", "-e", refused]).arg(program()).arg("restore").arg(copy);
+    call.arg("--data").arg(to).output().unwrap().into()
+}
+
+/// Else a station could begin on results that a power cut takes away.
+#[test]
+fn of_a_copy_whose_names_the_disk_did_not_take_nothing_stays() {
+    let (made, _, place) = failed();
+    let [copy, new, empty, trace] = ["copy", "new", "empty", "trace"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy).unwrap();
+    for is_there in [false, true] {
+        let to = if is_there { &empty } else { &new };
+        let begin = || {
+            if is_there {
+                fs::create_dir(to).unwrap();
+            }
+        };
+        begin();
+        let mut call = Command::new("strace");
+        call.args(["-qq", "-e", "trace=fsync", "-o"]).arg(&trace).arg(program()).arg("restore").arg(&copy);
+        assert!(call.arg("--data").arg(to).status().unwrap().success());
+        let last = fs::read_to_string(&trace).unwrap().lines().count();
+        fs::remove_dir_all(to).unwrap();
+        begin();
+        let did = restored(&copy, to, &format!("inject=fsync:error=EIO:when={last}"));
+        assert_eq!(did.code, Some(3), "{did:?}");
+        // The lock of whoever restores stays in a folder that was there.
+        let kept = fs::read_dir(to)
+            .map_or(0, |left| left.filter(|one| one.as_ref().unwrap().file_name() != "station.lock").count());
+        assert_eq!((kept, to.exists()), (0, is_there), "{did:?}");
+        restore(&Folder::new(&copy), to).unwrap();
+        assert_eq!(check(to).code, Some(0));
+    }
+}
+
+/// An empty folder beside them makes no results worse.
+#[test]
+fn a_copy_is_made_though_the_folder_in_which_it_was_begun_stays() {
+    let (made, _, place) = failed();
+    let [copy, to] = ["copy", "to"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy).unwrap();
+    fs::create_dir(&to).unwrap();
+    let did = restored(&copy, &to, "inject=rmdir,unlinkat:error=EIO");
+    assert_eq!(did.code, Some(0), "{did:?}");
+    assert!(to.join(".partial").exists(), "the control");
+    assert_eq!(check(&to).code, Some(0));
 }
