@@ -20,10 +20,11 @@ use crate::disk;
 use crate::engine::Engine;
 use crate::exit::Exit;
 use crate::history::PlanName;
+use crate::history::runs::RunLine;
+use crate::history::unit::UnitRun;
 use crate::labgrid::LaneBoard;
 use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::{self, Outbox, PlantSink, Sink};
-use crate::record::RunHead;
 use crate::run::{self as runs, Recovered, Saved};
 use crate::said::Saying;
 use crate::settings::{PlanFile, PlantSettings, Settings};
@@ -224,7 +225,7 @@ pub(super) fn sinks(settings: &Settings, store: &mut Store) -> Result<Vec<Box<dy
 
 /// Closes the runs that were under way when the station ended, prints them, and returns them; with them those whose lanes'
 /// processes cannot be killed.
-pub(super) fn recovered(store: &mut Store) -> Result<(Vec<Saved>, Vec<RunHead>), Failure> {
+pub(super) fn recovered(store: &mut Store) -> Result<(Vec<Saved>, Vec<UnitRun>), Failure> {
     let Recovered { closed, unclosed, stuck } = runs::recover(store)?;
     for Saved { record, .. } in &closed {
         let (id, serial) = (&record.run.id, &record.run.serial);
@@ -233,7 +234,8 @@ pub(super) fn recovered(store: &mut Store) -> Result<(Vec<Saved>, Vec<RunHead>),
     if let Some(error) = unclosed {
         return Err(error.into());
     }
-    for RunHead { id, lane, .. } in &stuck {
+    let stuck = stuck?;
+    for RunLine { id, lane, .. } in stuck.iter().map(|run| &run.line) {
         let why = Saying::Unkillable;
         console::error(&format_args!("the lane {lane} of the run {id} may still have its board: {why}"));
     }
@@ -241,6 +243,6 @@ pub(super) fn recovered(store: &mut Store) -> Result<(Vec<Saved>, Vec<RunHead>),
 }
 
 /// Whether the process of this run may have the board that is in this lane now. Either may have been renamed since.
-pub(super) fn may_have(run: &RunHead, lane: &str, board: &LaneBoard) -> bool {
-    run.lane == lane || run.target == board.to_string()
+pub(super) fn may_have(run: &UnitRun, lane: &str, board: &LaneBoard) -> bool {
+    run.line.lane == lane || run.target == board.to_string()
 }

@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         aside: Aside::default(),
     };
     let stop = || signal.by();
-    let out = stuck.iter().try_for_each(|run| work.take_out(&run.lane, !arguments.once, &stop));
+    let out = stuck.iter().try_for_each(|run| work.take_out(&run.line.lane, !arguments.once, &stop));
     // The plant lends a board again as soon as it has its run, so nothing is sent before the board is out.
     if stop().is_none() {
         out?;

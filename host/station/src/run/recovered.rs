@@ -7,6 +7,7 @@ use std::path::Path;
 use halfrow::files::written_aside::{folder_of, sync_folder};
 
 use crate::clock;
+use crate::history::unit::{UnitRun, run_of};
 use crate::kept::{Spool, spools};
 use crate::lane::Message;
 use crate::lane::supervisor::{EVENTS, kill_left_behind, left_behind};
@@ -16,7 +17,7 @@ use crate::record::{
     StepRecord, made_within,
 };
 use crate::said::Saying;
-use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stored};
+use crate::store::{Folder, InLane, OpenRun, SharedStore, Snapshot, Store, StoreError, Stored};
 
 use super::evidence::{attached_as_can_be, has_unread};
 use super::{RunError, Saved, Stage, Watch, save};
@@ -75,23 +76,23 @@ pub struct Recovered {
     pub closed: Vec<Saved>,
     /// Why another one is still open, if one is: its lane stays blocked.
     pub unclosed: Option<RunError>,
-    /// If none is: the runs whose lanes' processes cannot be killed, and may still have their boards.
-    pub stuck: Vec<RunHead>,
+    /// If none is: the runs whose lanes' processes cannot be killed, and may still have their boards, or why they are not known.
+    pub stuck: Result<Vec<UnitRun>, StoreError>,
 }
 
 /// Closes every open run as ERROR, cause crash, with what its lane wrote down. The verdict that it was heading for does not
 /// count: to test a board again costs a minute, a wrong PASS costs more.
 ///
 /// # Errors
-/// [`RunError`] when the open runs are not known.
-pub fn recover(store: &mut Store) -> Result<Recovered, RunError> {
-    let open = store.open_runs().map_err(not_begun)?;
+/// [`StoreError`] when the open runs are not known.
+pub fn recover(store: &mut Store) -> Result<Recovered, StoreError> {
+    let open = store.open_runs()?;
     if !open.is_empty() {
         store.folder().blobs().clear();
     }
     let folder = store.folder().clone();
     let why = |tries| Saying::StationEnded { tries };
-    let mut recovered = Recovered { closed: Vec::new(), unclosed: None, stuck: Vec::new() };
+    let mut recovered = Recovered { closed: Vec::new(), unclosed: None, stuck: Ok(Vec::new()) };
     for open in open {
         match closed(&folder, open, why, |record| store.finish(record, 0)) {
             Ok(saved) => recovered.closed.push(saved),
@@ -99,26 +100,22 @@ pub fn recover(store: &mut Store) -> Result<Recovered, RunError> {
         }
     }
     if recovered.unclosed.is_none() {
-        recovered.stuck = stuck(store)?;
-        clear(store);
+        recovered.stuck = stuck(&folder).inspect(|_| clear(store));
     }
     Ok(recovered)
 }
 
-fn not_begun(error: impl Into<StoreError>) -> RunError {
-    RunError::NotBegun(Box::new(error.into()))
-}
-
 /// The runs that are over, and whose lanes' processes are there all the same.
-fn stuck(store: &Store) -> Result<Vec<RunHead>, RunError> {
-    let path = store.folder().spools();
+fn stuck(folder: &Folder) -> Result<Vec<UnitRun>, StoreError> {
+    let path = folder.spools();
     let listed = || fs::read_dir(&path)?.collect::<io::Result<Vec<_>>>();
-    let spools = listed().map_err(|source| not_begun(BlobError::Folder { path: path.clone(), source }))?;
+    let spools = listed().map_err(|source| BlobError::Folder { path: path.clone(), source })?;
     let stuck = spools.into_iter().filter(|spool| left_behind(&spool.path()).is_some());
-    stuck
-        .map(|spool| store.saved(&spool.file_name().to_string_lossy()))
-        .map(|saved| saved.map(|(_, record)| record.run).map_err(not_begun))
-        .collect()
+    let of_rows = |spool: fs::DirEntry| {
+        let run = spool.file_name().to_string_lossy().into_owned();
+        run_of(&Snapshot::take(folder)?, &run)?.ok_or(StoreError::ReadsOtherwise { run })
+    };
+    stuck.map(of_rows).collect()
 }
 
 /// Whether the spool of a run that is over is still needed: by the next start, which has to know of the lane's process, or by

@@ -4,8 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Child, Command};
 
+use halfrow_station::store::Folder;
+
 use super::bench::PLAN;
-use crate::common::until;
+use crate::common::{query, until};
 use crate::history::commands::did;
 use crate::history::made::{End, Made, Run};
 use crate::history::served::Served;
@@ -103,6 +105,9 @@ fn no_start_judges_beside_a_process_until_it_has_ended() {
         let (code, complained) = run(&data, "1");
         assert!(code == 3 && complained.contains("cannot be killed"), "{found}: {code} {complained}");
     }
+    // Which lane and board are meant is not only in the record.
+    let record = query(data.path(), "SELECT record_sha256 FROM run").concat();
+    fs::write(Folder::new(data.path()).blobs().path(&record), "half of it").unwrap();
     let (code, complained) = run(&data, "2");
     assert_eq!(code, 0, "another board in another lane: {complained}");
     is_out(Made::at(data));
@@ -118,6 +123,23 @@ fn a_lane_is_as_before_once_its_process_has_ended() {
     let (code, complained) = run(&data, "1");
     assert_eq!(code, 0, "{complained}");
     assert_eq!(fs::read_dir(data.path().join("spool")).unwrap().count(), 0);
+}
+
+/// As where an earlier copy of the database was put back: nobody knows which lane the process has, and nothing may begin.
+#[test]
+fn a_run_that_was_closed_is_told_though_the_process_of_another_is_in_no_lane_that_is_known() {
+    let mut made = Made::new();
+    let _outlived = Outlived::of(&mut made, "1");
+    let spools = made.folder().spools();
+    let spool = fs::read_dir(&spools).unwrap().next().unwrap().unwrap().path();
+    let unknown = spools.join("0".repeat(36));
+    fs::create_dir(&unknown).unwrap();
+    fs::copy(spool.join("lane.pid"), unknown.join("lane.pid")).unwrap();
+    let (code, complained) = run(&made.closed(), "2");
+    assert_eq!(code, 3, "{complained}");
+    assert!(complained.contains("of CAT00001 was found open, and is ERROR"), "{complained}");
+    assert!(complained.contains("reads back otherwise"), "{complained}");
+    assert!(!complained.contains("the board not touched"), "no run was to begin yet: {complained}");
 }
 
 /// Another run keeps the station from starting, and this one is told and not forgotten.
