@@ -143,8 +143,10 @@ impl Work<'_> {
         };
         let run = &saved.record.run.id;
         let sent = self.sent(run, &|| holding.is_lost() || stop().is_some());
-        let is_sent = matches!(sent, Sent::Yes);
-        let counts = if is_sent { self.counts(run) } else { None };
+        // The plant ends a job as it takes its run, which the outbox may not have noted yet.
+        let is_over = matches!(holding.lost(), Some(Lost::Taken { .. }));
+        let counts = if is_over || matches!(sent, Sent::Yes) { self.counts(run) } else { None };
+        let is_sent = counts.is_some() || matches!(sent, Sent::Yes);
         let refused = if let Sent::Refused(said) = sent { Some(said.to_string()) } else { None };
         holding.end();
         Ok(JobResult { claim, is_sent, refused, counts, saved })

@@ -1,6 +1,7 @@
 //! What the plant does with the run of a job.
 
 use std::cell::Cell;
+use std::sync::mpsc;
 
 use halfrow::Verdict;
 use halfrow::verdict::StoppedBy;
@@ -44,6 +45,42 @@ fn whether_a_run_counts_is_told_once_the_plant_has_it() {
     assert_eq!(became(true, false), (true, Some(true)));
     assert_eq!(became(true, true), (true, Some(false)), "its job was cancelled");
     assert_eq!(became(false, false), (false, None), "nobody knows yet");
+}
+
+/// A plant that has what it is given before the outbox hears of that.
+struct Late {
+    plant: PlantSink,
+    told: mpsc::Receiver<()>,
+}
+
+impl Sink for Late {
+    fn name(&self) -> &str {
+        self.plant.name()
+    }
+
+    fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered> {
+        self.plant.take(parcel)?;
+        // Its end is what tells.
+        let _ = self.told.recv();
+        Ok(())
+    }
+}
+
+/// The plant ends a job as it takes its run, so that the next renewal finds no job, perhaps before the outbox has noted the run.
+#[test]
+fn a_job_that_ended_with_its_run_is_not_taken_for_one_that_was_lost() {
+    let (server, ..) = with_a_job();
+    let folder = folder();
+    let settings = Settings::load_without_lanes(&settings(&server, folder.path(), "12")).unwrap();
+    let work = at_work(&settings, program().to_owned());
+    let (origin, kept) = work.store.with(|store| (store.origin().unwrap(), store.folder().clone()));
+    let plant = PlantSink::new(server.address(), settings.introduction(origin), kept);
+    let (tells, told) = mpsc::channel();
+    let outbox = Outbox::start(&work.store, vec![Box::new(Late { plant, told })]).unwrap();
+    let judged = judged(&work);
+    drop(tells);
+    outbox.close();
+    assert_eq!((judged.is_sent, judged.counts, judged.refused), (true, Some(true), None));
 }
 
 /// A plant that answers, but accepts nothing.
