@@ -127,7 +127,7 @@ fn serve(settings: Settings) -> Result<Exit, Failure> {
     let app = App::of_plant(settings, address, access.at(at.port()));
     let server = Server::start(&app, listener).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
-    let by = signal.wait(|| Ok::<_, Failure>(()))?;
+    let by = signal.wait(|| server.refuse_ended().map_err(Failure::error))?;
     server.close();
     Ok(halfrow::Cause::Stopped(by).into())
 }

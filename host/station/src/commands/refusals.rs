@@ -18,6 +18,7 @@ use super::user::NoUsers;
 use super::work::NoWork;
 use crate::check::{Fault, Superseded};
 use crate::engine::EngineEnded;
+use crate::web::PagesEnded;
 
 codes::codes! {
     PublishError {
@@ -53,6 +54,8 @@ codes::codes! {
     Superseded [run, row, sha256, verdict] => "run-record-superseded"
     ;
     EngineEnded => "engine-ended"
+    ;
+    PagesEnded => "pages-ended"
     ;
     NoMock => "plan-without-mock"
     ;

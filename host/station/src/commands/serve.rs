@@ -82,19 +82,20 @@ fn until_signal(
     begin(&engine).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
     notify.ready();
-    let by = at_work(&signal, &engine, notify).map_err(Failure::error)?;
-    engine.close(Some(by));
+    let ended = at_work(&signal, &engine, &server, notify);
+    engine.close(Some(*ended.as_ref().unwrap_or(&StoppedBy::Caller)));
     server.close();
-    Ok(halfrow::Cause::Stopped(by).into())
+    Ok(halfrow::Cause::Stopped(ended?).into())
 }
 
 /// Waits until a signal comes, and tells systemd meanwhile that the engine works.
-fn at_work(signal: &Signal, engine: &Engine, notify: &Notify) -> Result<StoppedBy, EngineEnded> {
+fn at_work(signal: &Signal, engine: &Engine, server: &Server, notify: &Notify) -> Result<StoppedBy, Failure> {
     let mut told = Instant::now();
     signal.wait(|| {
         if engine.has_ended() {
-            return Err(EngineEnded);
+            return Err(Failure::error(EngineEnded));
         }
+        server.refuse_ended().map_err(Failure::error)?;
         if told.elapsed() >= TELL {
             told = Instant::now();
             tell(engine, notify);

@@ -34,6 +34,7 @@ mod write_timeout;
 pub use access::{Access, Address, AddressError, Role, Scope};
 pub(crate) use access::{TokenError, Tokens, UserError, Users, add_token, add_user};
 pub use routes::{Route, Who, routes};
+pub(crate) use serve::PagesEnded;
 pub use serve::{ServeError, Server};
 pub use state::App;
 pub use visit::User;

@@ -62,6 +62,11 @@ pub enum ServeError {
     Room(#[source] io::Error),
 }
 
+/// The pages have ended unasked.
+#[derive(Debug, thiserror::Error)]
+#[error("the pages have ended, by a fault of their own that the log describes; start the program again")]
+pub(crate) struct PagesEnded;
+
 /// The pages, which are served until they are closed.
 #[derive(Debug)]
 pub struct Server {
@@ -97,6 +102,14 @@ impl Server {
         Ok(Self { stop, thread })
     }
 
+    /// Refuses to go on without pages.
+    ///
+    /// # Errors
+    /// [`PagesEnded`] when their thread has ended.
+    pub(crate) fn refuse_ended(&self) -> Result<(), PagesEnded> {
+        if self.thread.is_finished() { Err(PagesEnded) } else { Ok(()) }
+    }
+
     /// Ends all connections.
     pub fn close(self) {
         let _ = self.stop.send(());
@@ -114,10 +127,9 @@ fn serve(
 ) {
     runtime.block_on(async {
         match tokio::net::TcpListener::from_std(listener) {
-            Ok(listener) => drop(tokio::spawn(accept(listener, router, slots))),
+            Ok(listener) => drop(select(pin!(accept(listener, router, slots)), stopped).await),
             Err(error) => tracing::error!("the pages cannot be served: {error}"),
         }
-        let _ = stopped.await;
     });
     runtime.shutdown_timeout(LAST);
 }
@@ -167,7 +179,30 @@ async fn connection(stream: TcpStream, router: Router, slot: Arc<Slot>) {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
+    use std::os::fd::OwnedFd;
+    use std::time::Instant;
+
     use super::*;
+    use crate::web::request_guard::tests::station;
+
+    #[test]
+    fn pages_that_cannot_be_served_are_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let (app, engine) = station(folder.path());
+        let well = Server::start(&app, Server::listen("127.0.0.1:0".parse().unwrap()).unwrap()).unwrap();
+        // The system tells of no connections to a file, as epoll_ctl(2) says.
+        let none = OwnedFd::from(File::open(folder.path().join("station.toml")).unwrap());
+        let server = Server::start(&app, none.into()).unwrap();
+        let begun = Instant::now();
+        while server.refuse_ended().is_ok() {
+            assert!(begun.elapsed() < Duration::from_secs(60), "they are waited for");
+            thread::sleep(FULL);
+        }
+        assert!(well.refuse_ended().is_ok(), "the control");
+        well.close();
+        engine.close(None);
+    }
 
     /// 192.0.2.0/24 is for documentation alone, so no computer has it (RFC 5737).
     #[test]
