@@ -100,40 +100,47 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
         Err(CopyError::Store(StoreError::Older { .. })) => refuse(from, from, &foreign(from)?)?,
         looked_at => looked_at?,
     }
-    let mut lock = None;
-    made(to, |aside| {
-        if to.is_dir() {
-            // No station can start there before all is in place.
-            lock = Some(Folder::new(to).lock()?);
+    let (is_new, mut lock) = (!to.exists(), None);
+    let restored = made(to, |aside| {
+        let refused = |source| CopyError::Io { path: to.to_owned(), source };
+        // No station can start there before all is in place.
+        let held = lock.insert(Folder::new(to).lock()?);
+        if is_new {
+            held.set_permissions(Permissions::from_mode(0o600)).map_err(refused)?;
         }
         let copied = into(from, aside, |error| !error.is_gone())?;
         let new = Folder::new(aside);
         sound(&new, from)?;
-        if lock.is_some() && new.lock_file().exists() {
+        if new.lock_file().exists() {
             // It would replace the one that is held.
-            let refused = |source| CopyError::Io { path: to.to_owned(), source };
             fs::remove_file(new.lock_file()).map_err(refused)?;
         }
         Ok(copied)
-    })
+    });
+    if is_new && restored.is_err() && lock.is_some() {
+        let _ = fs::remove_file(Folder::new(to).lock_file()).and_then(|()| fs::remove_dir(to));
+    }
+    restored
 }
 
-/// Makes the folder `to`, whole or not at all: `fill` is given a place aside. A folder that exists already remains the
-/// same one, and may be a disk of its own.
+/// Fills the folder `to`, wholly or not at all: `fill` is given a place aside, in the folder, which keeps stations from starting there.
+/// A folder that exists already remains the same one, and may be a disk of its own.
 fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Result<Copied, CopyError> {
     let refused = |source| CopyError::Io { path: to.to_owned(), source };
     let to = std::path::absolute(to).map_err(refused)?;
     Folder::new(&to).refuse_path()?;
     let exists = || CopyError::Exists { path: to.clone() };
-    let (Some(parent), Some(name)) = (to.parent(), to.file_name()) else { return Err(exists()) };
-    let is_there = to.is_dir();
-    let aside =
-        if is_there { to.join(ASIDE) } else { parent.join(format!(".{}{ASIDE}", name.to_string_lossy())) };
+    let Some(parent) = to.parent() else { return Err(exists()) };
+    let (is_there, aside) = (to.is_dir(), to.join(ASIDE));
     if aside.exists() {
         return Err(CopyError::UnderWay { path: aside });
     }
     if to.is_file() || (is_there && holds_anything(&to).map_err(refused)?) {
         return Err(exists());
+    }
+    if !is_there {
+        private_folder(&to).map_err(refused)?;
+        synced(parent).map_err(StoreError::from)?;
     }
     match private_folder(&aside) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
@@ -142,16 +149,13 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
         made => made.map_err(refused)?,
     }
     let copied = fill(&aside).and_then(|copied| {
-        if is_there {
-            move_all(&entries(&aside, &to).map_err(refused)?, &to)?;
-        } else {
-            move_all(&[(aside.clone(), to.clone())], parent)?;
-        }
+        move_all(&entries(&aside, &to).map_err(refused)?, &to)?;
         Ok(copied)
     });
-    if is_there || copied.is_err() {
-        // The next attempt names what cannot be removed.
-        let _ = fs::remove_dir_all(&aside);
+    // The next attempt names what cannot be removed.
+    let _ = fs::remove_dir_all(&aside);
+    if !is_there && copied.is_err() {
+        let _ = fs::remove_dir(&to);
     }
     copied
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use halfrow_station::kept::{backup, restore};
-use halfrow_station::store::Folder;
+use halfrow_station::store::{Folder, Store, StoreError};
 use tempfile::TempDir;
 
 use super::commands::did;
@@ -97,6 +97,20 @@ fn of_a_copy_whose_names_the_disk_did_not_take_nothing_stays() {
         restore(&Folder::new(&copy), to).unwrap();
         assert_eq!(check(to).code, Some(0));
     }
+}
+
+/// As where the power fails: a station that began anew would be in the copy's way.
+#[test]
+fn no_station_begins_where_a_restore_was_killed_that_made_its_folder() {
+    let (made, _, place) = failed();
+    let [copy, to] = ["copy", "to"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy).unwrap();
+    restored(&copy, &to, "inject=renameat2:signal=SIGKILL");
+    let refused = Store::open(&Folder::new(&to)).unwrap_err();
+    assert!(matches!(refused, StoreError::Unrestored { .. }), "{refused:?}");
+    fs::remove_dir_all(to.join(".partial")).unwrap();
+    restore(&Folder::new(&copy), &to).unwrap();
+    assert_eq!(check(&to).code, Some(0));
 }
 
 /// An empty folder beside them makes no results worse.
