@@ -164,6 +164,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "as the first row that is not acknowledged (next_row_out)",
     ),
     fails(
+        "rows taken anywhere, over a link that lost a packet before",
+        ",fault=rows-anywhere,fault=drop,packet=100",
+        "took it without an answer",
+    ),
+    fails(
         "a close that is counted as a session",
         ",fault=unkept-rule,instead=counted-close",
         "a greeting must open the next session",

@@ -259,9 +259,9 @@ impl Rules<'_, '_> {
         self.run.board.disregard_rows(is_pushed.into());
         let mut came = 0;
         for _ in 0..TRIES {
-            let acknowledged = self.acknowledge_alone(kept.first + 1)?;
-            came += usize::from(acknowledged.has_surely_come());
-            if is_one_acknowledged(kept, &acknowledged.status)? {
+            let alone = self.alone(|board| board.acknowledge_alone(kept.first + 1))?;
+            came += usize::from(alone.has_surely_come());
+            if is_one_acknowledged(kept, &alone.after)? {
                 self.run.board.disregard_rows(0);
                 self.right += 1;
                 if is_pushed {

@@ -55,6 +55,9 @@ pub(super) use waiting::MOST_FILLED;
 /// The first row factor of the shadow bank.
 const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
 
+/// How often a board must count a row as known that it took without an answer.
+const TIMES_KNOWN: u32 = 3;
+
 /// Rows of the frames that a board is given for the rules, and of those among them that are as wide as it takes.
 pub(super) fn rows_of_rules(capabilities: &Capabilities) -> (usize, usize) {
     let most = usize::from(capabilities.max_height);
@@ -213,7 +216,10 @@ impl<'a, 'run> Rules<'a, 'run> {
         let said = self.run.board.ask(kind, payload);
         let right = Response::Refused(Refusal { code, kind: kind.code(), detail });
         let is_unanswered = matches!(said, Err(BoardError::NoAnswer { .. } | BoardError::Unanswered { .. }));
-        if is_unanswered && kind == Kind::RowIn && self.is_known_when_sent_again(payload) {
+        if is_unanswered
+            && kind == Kind::RowIn
+            && (0..TIMES_KNOWN).all(|_| self.is_known_when_sent_again(payload))
+        {
             // It is known what happened to each copy of this request.
             self.run.board.excuse_changes(changes);
             return Err(broken(rule, kind, answer(&right), Answer::Taken {}));
@@ -241,14 +247,12 @@ impl<'a, 'run> Rules<'a, 'run> {
         }
     }
 
-    /// Whether the board has the row in `payload`, by what it counts when that comes once more.
+    /// Whether the board has the row in `payload`, by what it counts when that comes once more, and surely comes.
     fn is_known_when_sent_again(&mut self, payload: &[u8]) -> bool {
-        let Ok(before) = self.run.board.status() else { return false };
-        self.run.board.give_bytes(Kind::RowIn, payload);
-        let Ok(after) = self.run.board.status() else { return false };
+        let Ok(alone) = self.alone(|board| board.give_bytes(Kind::RowIn, payload)) else { return false };
         let known = |status: &Status| u64::from(status.rows_unneeded) + u64::from(status.rows_repeated);
-        let is_refused = after.refusals > before.refusals;
-        known(&after) > known(&before) && !is_refused && self.run.board.had_each_packet_once(&after)
+        let is_refused = alone.after.refusals > alone.before.refusals;
+        known(&alone.after) > known(&alone.before) && !is_refused && alone.has_surely_come()
     }
 
     /// Sends a request that must be answered with `reply`.

@@ -5,7 +5,7 @@ use halfrow_protocol::Kind;
 use super::counts::equal;
 use super::rows::TRIES;
 use super::{Rules, counter_wrong, doubted};
-use crate::board::{Status, Tally};
+use crate::board::{Board, Status, Tally};
 use crate::result::{CheckName, Counter, Doubt, Rule};
 use crate::run::findings::{During, End};
 use crate::run::sessions::window::window_wrong;
@@ -13,27 +13,28 @@ use crate::run::sessions::window::window_wrong;
 /// A row sequence number below the greatest that the rules reach, and far from any that they used.
 const SMALLER: u32 = 3 << 29;
 
-/// What became of a ROW_ACK between two STATUS.
-pub(super) struct Acknowledged {
-    /// The board's counters behind it.
-    pub(super) status: Status,
-    /// The packets that these count, and that they must count by those in front of it.
-    packets: [u32; 2],
+/// What the board counted before and behind a packet that was sent alone between two STATUS.
+pub(super) struct Alone {
+    pub(super) before: Status,
+    pub(super) after: Status,
     /// Whether each STATUS was asked for and answered once.
     once: bool,
 }
 
-impl Acknowledged {
-    /// Whether something came besides the second STATUS.
-    fn has_come(&self) -> bool {
-        let [counted, right] = self.packets;
-        counted >= right
+impl Alone {
+    /// The packets that the board must have counted in the end: two more, that packet and the second STATUS.
+    fn packets(&self) -> u32 {
+        self.before.packets.saturating_add(2)
     }
 
-    /// Whether that was certainly the ROW_ACK, not a copy of the first STATUS in place of it.
+    /// Whether something came besides the second STATUS: that packet, or a copy in place of it.
+    fn has_come(&self) -> bool {
+        self.after.packets >= self.packets()
+    }
+
+    /// Whether that was certainly the packet.
     pub(super) fn has_surely_come(&self) -> bool {
-        let [counted, right] = self.packets;
-        self.once && counted == right
+        self.once && self.after.packets == self.packets()
     }
 }
 
@@ -62,30 +63,29 @@ impl Rules<'_, '_> {
     pub(super) fn ack_beyond(&mut self) -> Result<(), End> {
         self.drop_rows()?;
         let (right, beyond) = (self.run.board.acknowledged(), self.run.board.credit());
-        let (rule, mut packets) = (Some(Rule::Banks), [0; 2]);
+        let (rule, mut packets) = (Some(Rule::Banks), (0, 0));
         for _ in 0..TRIES {
-            let acknowledged = self.acknowledge_alone(beyond)?;
-            equal(rule, &acknowledged.status, &[(Counter::NextRowOut, right)])?;
-            if acknowledged.has_come() {
+            let alone = self.alone(|board| board.acknowledge_alone(beyond))?;
+            equal(rule, &alone.after, &[(Counter::NextRowOut, right)])?;
+            if alone.has_come() {
                 self.right += 1;
                 return self.drop_rows();
             }
-            packets = acknowledged.packets;
+            packets = (alone.after.packets, alone.packets());
         }
-        let [counted, right] = packets;
+        let (counted, right) = packets;
         Err(doubted(counter_wrong(rule, Counter::Packets, counted, right), Doubt::AnswerLost {}))
     }
 
-    /// Acknowledges all rows before `row_sequence` by a ROW_ACK, which nothing answers, between two STATUS.
-    pub(super) fn acknowledge_alone(&mut self, row_sequence: u32) -> Result<Acknowledged, End> {
+    /// Sends a packet that need not be answered between two STATUS.
+    pub(super) fn alone(&mut self, send: impl FnOnce(&mut Board)) -> Result<Alone, End> {
         let Tally { packets_out, strays, .. } = self.run.board.tally();
         let before = self.status()?;
-        self.run.board.acknowledge_alone(row_sequence);
-        let status = self.status()?;
+        send(self.run.board);
+        let after = self.status()?;
         let tally = self.run.board.tally();
         let once = tally.packets_out - packets_out == 3 && tally.strays == strays;
-        let packets = [status.packets, before.packets.saturating_add(2)];
-        Ok(Acknowledged { status, packets, once })
+        Ok(Alone { before, after, once })
     }
 
     /// After a RESET the board must give credit for as many rows as it has input banks. It gave it for `rows` in its answer to
