@@ -113,31 +113,36 @@ impl Test<'_> {
         self.damaged_before = damaged;
         let to_host = self.inward()?;
         let together = self.together()?;
-        let errors = self.errors()?;
+        let damaged = self.damaged_out()?;
+        let errors = self.errors(damaged);
         let limit = self.board.bytes_per_second();
         debug_assert_eq!(self.begun, PARTS, "who waits for a test counts on it");
         Ok(Figures { link: self.board.link_name(), limit, errors, round_trips, to_board, to_host, together })
     }
 
-    /// The errors so far.
-    fn errors(&mut self) -> Result<Errors, BoardError> {
-        let damaged_out = self.damaged_before + self.damaged_out()?;
-        Ok(Errors::between(self.before, self.board.tally(), damaged_out, self.wrong))
+    /// The errors so far, with the packets that the board counts as damaged in this session.
+    fn errors(&self, damaged_out: u64) -> Errors {
+        let damaged_out = self.damaged_before + damaged_out;
+        Errors::between(self.before, self.board.tally(), damaged_out, self.wrong)
     }
 
-    /// Why the test broke off when `source` came: a link that loses packets explains that something never came.
+    /// Why the test broke off when `source` came: a link that loses packets explains that something never came. Of a board that then
+    /// answers nothing at all, only what came damaged is a matter of the link.
     fn broken_off(&mut self, source: BoardError) -> LinkTestError {
-        match self.errors() {
+        let (damaged_out, most_lost) = match self.damaged_out() {
             // What never came was itself sent again, less often than that.
-            Ok(errors) if errors.damaged() > 0 || errors.lost() > RetryLimit::default().fixed => {
-                LinkTestError::PoorLink {
-                    link: self.board.link_name(),
-                    errors: errors.into(),
-                    source: Problem::of(&source).unasked().into(),
-                }
-            }
-            Err(why @ (BoardError::Stopped(_) | BoardError::Link { .. })) => why.into(),
-            Ok(_) | Err(_) => source.into(),
+            Ok(damaged_out) => (damaged_out, RetryLimit::default().fixed),
+            Err(why @ (BoardError::Stopped(_) | BoardError::Link { .. })) => return why.into(),
+            Err(_) => (0, u64::MAX),
+        };
+        let errors = self.errors(damaged_out);
+        if errors.damaged() == 0 && errors.lost() <= most_lost {
+            return source.into();
+        }
+        LinkTestError::PoorLink {
+            link: self.board.link_name(),
+            errors: errors.into(),
+            source: Problem::of(&source).unasked().into(),
         }
     }
 
