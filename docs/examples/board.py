@@ -133,7 +133,7 @@ class Board:
         return request(self, payload, *struct.unpack_from(fields, payload))
 
     def send(self, kind, sequence, flags, session, payload):
-        window = self.entered + IN_BANKS
+        window = min(self.entered + IN_BANKS, 2**32 - 1)
         packet = HEADER.pack(1, kind, sequence, len(payload), flags, session, window) + payload
         packet += struct.pack("<I", zlib.crc32(packet))
         self.to_host += b"\0" + stuff(packet) + b"\0"
@@ -279,7 +279,7 @@ class Board:
             else:
                 self.counters[ROWS_UNNEEDED] += 1
             return
-        refuse_if(number >= self.entered + IN_BANKS, NO_CREDIT)
+        refuse_if(number >= min(self.entered + IN_BANKS, 2**32 - 1), NO_CREDIT)
         refuse_if(self.configuration is None or self.generation == 0, NOT_READY)
         self.refuse_out_of_place(number, frame, row, width, flags)
 

@@ -81,7 +81,7 @@ fn a_board_gets_the_blanking_that_it_names_for_narrow_rows_of_a_grid() {
         let read = Packet { header: packet.header, payload: &packet.payload };
         match (toward, Request::read(&read), packet.reply()) {
             (Toward::Board, Ok(Request::Commit(commit)), _) => {
-                is_grid = commit.shape.is_some_and(|shape| shape.v > 0)
+                is_grid = commit.shape.is_some_and(|shape| shape.v > 0);
             }
             (Toward::Board, Ok(Request::Configure(settings)), _) => {
                 (is_narrow, rows) = (settings.width < GRID_WIDTH, settings.blanking);

@@ -133,6 +133,27 @@ fn no_bit_of_the_frame_of_a_commit_is_lost() {
     }
 }
 
+/// Where ROW_IN names its frame (WIRE.md, 20).
+const FRAME_OF_ROW: Range<usize> = 4..6;
+
+/// For one of these frames the board has tables, it says.
+#[test]
+fn only_the_frame_of_a_commit_has_its_tables() {
+    for frame in [0x5a5a ^ 1 << 5, !0x5a5a ^ 1 << 12].map(u16::to_le_bytes) {
+        let mut is_of_it = false;
+        let report = altering(move |toward, packet| {
+            if toward == Toward::Board {
+                is_of_it = packet.is(Kind::RowIn) && packet.payload.get(FRAME_OF_ROW) == Some(&frame[..]);
+            }
+            let refused = refusal(&packet).filter(|it| is_of_it && it.code == RefusalCode::NotReady);
+            vec![refused.map_or(packet.clone(), |refused| {
+                packet.saying(&Reply::Refusal(Refusal { code: RefusalCode::Row, ..refused }))
+            })]
+        });
+        assert_eq!(broken(&report).0, Rule::NotReady, "{frame:?}");
+    }
+}
+
 /// The tallest grid of the widest frames that the board can have, and the next one.
 #[test]
 fn a_board_has_the_grids_that_its_entries_have_room_for_and_no_others() {

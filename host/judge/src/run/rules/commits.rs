@@ -23,7 +23,10 @@ impl Rules<'_, '_> {
     pub(super) fn commits(&mut self) -> Result<(), End> {
         // One row a frame.
         self.configure(1)?;
-        self.no_shapes()?;
+        self.upload(0)?;
+        // A v without a k.
+        self.commit_shapeless(Rule::Skipped, (0, FIRST), &[*GridShape::V.end() as u8])?;
+        self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))?;
         self.upload(1)?;
         self.wrong_sums()?;
         if self.capabilities.table_banks > 1 {
@@ -51,20 +54,16 @@ impl Rules<'_, '_> {
         self.replied(Rule::Generation, &request, vec![generation])
     }
 
-    /// Commits the small tables at place 0 with a v but no k, and with a v of 0 and a k that no board takes: neither is a shape, so
-    /// the bank holds row factors.
-    fn no_shapes(&mut self) -> Result<(), End> {
-        let unfinished = vec![*GridShape::V.end() as u8];
-        for (rule, generation, shape) in
-            [(Rule::Skipped, SECOND, unfinished), (Rule::NoGrid, FIRST, vec![0, u8::MAX])]
-        {
-            self.upload(0)?;
-            let request = Request::Commit(self.commit_of(0, generation, FRAME));
-            let bytes = [payload(&request), shape].concat();
-            self.bytes_replied(rule, request.kind(), &bytes, vec![generation])?;
-            self.one_rows(rule, &[FRAME], (generation, 0))?;
-        }
-        Ok(())
+    /// Commits the small tables at `place` with a `shape` that is none, so that the bank holds row factors.
+    fn commit_shapeless(
+        &mut self,
+        rule: Rule,
+        (place, generation): (usize, u8),
+        shape: &[u8],
+    ) -> Result<(), End> {
+        let request = Request::Commit(self.commit_of(place, generation, FRAME));
+        let bytes = [&payload(&request), shape].concat();
+        self.bytes_replied(rule, request.kind(), &bytes, vec![generation])
     }
 
     /// Frames of one row each, which must be made with the small tables at `place` as `generation`.
@@ -104,7 +103,7 @@ impl Rules<'_, '_> {
     }
 
     fn pending(&mut self) -> Result<(), End> {
-        self.commit(1, SECOND, FRAME)?;
+        self.commit_shapeless(Rule::NoGrid, (1, SECOND), &[0, u8::MAX])?;
         for generation in [FIRST, SECOND] {
             let again = Commit { generation, kernel_crc: 0, ..self.commit_of(1, 0, FRAME) };
             self.replied(Rule::Generation, &Request::Commit(again), vec![generation])?;

@@ -1,5 +1,7 @@
 //! Grids that must be refused, on a board that takes grids.
 
+use std::collections::BTreeSet;
+
 use halfrow_model::{Geometry, GridShape, TableSet};
 use halfrow_protocol::message::{Commit, Entries, Grids, RefusalCode, Request, Shape, Span, Table};
 
@@ -65,21 +67,26 @@ impl Rules<'_, '_> {
         self.refused(Rule::Shape, &Request::Commit(other), RefusalCode::TableCrc, Table::Kernel as u16)
     }
 
-    /// The grid of `finest`, which reads back otherwise, for the most rows for which a bank holds it, and for more: of the narrowest
-    /// frames, and of the widest.
+    /// The grid of `finest`, which reads back otherwise, in the narrowest and the widest frames: for the most rows for which a bank has
+    /// the entries, and for more.
     fn most_entries(&mut self, grids: Grids, finest: Commit) -> Result<(), End> {
         let Some(shape) = shape_of(finest) else { return Ok(()) };
         let (height, depth) = (self.height, self.small.geometry.depth());
-        for width in [self.width, usize::from(self.capabilities.max_width) & !1] {
+        let most = usize::from(self.capabilities.max_height);
+        for width in BTreeSet::from([self.width, usize::from(self.capabilities.max_width) & !1]) {
             let of_rows = |rows| Geometry::new(width, rows, depth, width as u32 - 1).ok();
-            let all = (1..=usize::from(self.capabilities.max_height)).filter_map(of_rows);
-            let (held, others): (Vec<_>, Vec<_>) =
-                all.partition(|geometry| shape.entries(geometry) <= grids.entries.into());
-            let held = held.last().map(|most| (most, RefusalCode::TableCrc, Table::Grid as u16));
-            let others = others.first().into_iter().chain(others.last());
-            let others = others.map(|beyond| (beyond, RefusalCode::Range, K));
-            for (geometry, code, detail) in held.into_iter().chain(others) {
-                self.set(geometry, RowTiming::default())?;
+            let is_held = |rows: &usize| {
+                of_rows(*rows).is_some_and(|geometry| shape.entries(&geometry) <= grids.entries.into())
+            };
+            let tallest = (1..=most).rev().find(is_held).unwrap_or(0);
+            for rows in BTreeSet::from([tallest.max(1), (tallest + 1).min(most), most]) {
+                let Some(geometry) = of_rows(rows) else { continue };
+                self.set(&geometry, RowTiming::default())?;
+                let (code, detail) = if rows <= tallest {
+                    (RefusalCode::TableCrc, Table::Grid as u16)
+                } else {
+                    (RefusalCode::Range, K)
+                };
                 self.refused(Rule::Shape, &Request::Commit(finest), code, detail)?;
             }
         }

@@ -9,6 +9,8 @@ use crate::run::findings::End;
 
 /// The generation of tables that no frame uses.
 const GENERATION: u8 = 0xff;
+/// The frame for which they are committed.
+const FRAME: u16 = 0x5a5a;
 
 impl Rules<'_, '_> {
     pub(super) fn power_up(&mut self) -> Result<(), End> {
@@ -39,7 +41,24 @@ impl Rules<'_, '_> {
             RefusalCode::TableCrc,
             Table::RowFactors as u16,
         )?;
-        self.replied(Rule::Generation, &Request::Commit(right), vec![right.generation])
+        // Frames that differ in every bit.
+        for first_frame in [FRAME, !FRAME] {
+            self.waited_for(Commit { first_frame, ..right })?;
+        }
+        Ok(())
+    }
+
+    /// Until the frame of `commit` there are no tables, unless the board has one bank of them.
+    fn waited_for(&mut self, commit: Commit) -> Result<(), End> {
+        self.replied(Rule::Generation, &Request::Commit(commit), vec![commit.generation])?;
+        if self.capabilities.table_banks > 1 {
+            for frame in (0..u16::BITS).map(|bit| commit.first_frame ^ 1 << bit) {
+                let place = RowPlace { frame, ..self.place(0) };
+                self.row_refused(Rule::NotReady, place, RefusalCode::NotReady)?;
+            }
+        }
+        // So that another commit may wait.
+        self.drop_rows()
     }
 
     fn not_ready(&mut self, request: &Request<'_>) -> Result<(), End> {
