@@ -195,6 +195,10 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     ("station-input-names-unusable", CAUSE),
     ("station-input-wrong", "do what the end of its sentence says"),
+    (
+        "store-of-other-user",
+        "run it as the user of the station, and give that user what the message names, by the `chown` there",
+    ),
     ("table-depth-unknown", "make the tables again with `halfrow tables` and --bits 8, 10 or 12"),
     (
         "table-file-is-memory-image",
