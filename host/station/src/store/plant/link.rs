@@ -2,29 +2,19 @@
 
 use std::sync::Arc;
 
-use parking_lot::Mutex;
-
 use super::super::StoreError;
+use super::idle::Idle;
 use super::{Plant, PlantAddress};
-
-/// How many connections are kept while nobody asks.
-const KEPT: usize = 4;
 
 /// A plant that is connected to when it is asked something, and anew after an error. A clone has the same connections.
 #[derive(Clone, Debug)]
-pub struct PlantLink(Arc<Parts>);
-
-#[derive(Debug)]
-struct Parts {
-    address: PlantAddress,
-    idle: Mutex<Vec<Plant>>,
-}
+pub struct PlantLink(Arc<Idle>);
 
 impl PlantLink {
     /// A link to the plant at `address`.
     #[must_use]
     pub fn new(address: PlantAddress) -> Self {
-        Self(Arc::new(Parts { address, idle: Mutex::default() }))
+        Self(Arc::new(Idle::new(address)))
     }
 
     /// A link of its own to the same plant, for short questions that have to be answered in time: it waits only seconds for an
@@ -37,22 +27,19 @@ impl PlantLink {
     /// The plant's answer to `question`, which waits for no other question.
     ///
     /// # Errors
-    /// Those of the question, and [`StoreError`] when the plant is not there, or refuses. Its connection is used no more then.
+    /// Those of the question, and [`StoreError`] when the plant is not there, or refuses. The next question goes over a new
+    /// connection.
     pub fn ask<T, E: From<StoreError>>(
         &self,
         question: impl FnOnce(&mut Plant) -> Result<T, E>,
     ) -> Result<T, E> {
         // A question that panicked has taken the connection with it.
-        let kept = self.0.idle.lock().pop();
-        let mut plant = match kept {
+        let mut plant = match self.0.take() {
             Some(plant) => plant,
-            None => Plant::connect(&self.0.address)?,
+            None => self.0.connect()?,
         };
-        let answer = question(&mut plant)?;
-        let mut idle = self.0.idle.lock();
-        if idle.len() < KEPT {
-            idle.push(plant);
-        }
+        let answer = question(&mut plant).inspect_err(|_| self.0.clear())?;
+        self.0.keep(plant);
         Ok(answer)
     }
 }

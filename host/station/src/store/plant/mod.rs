@@ -7,6 +7,7 @@ mod address;
 pub(super) mod arrived;
 mod audit;
 mod boards;
+mod idle;
 mod jobs;
 mod kept;
 mod link;

@@ -2,29 +2,19 @@
 
 use std::sync::Arc;
 
-use parking_lot::Mutex;
-
 use super::super::{Deed, Snapshot, StoreError};
-use super::{Plant, PlantAddress};
-
-/// How many connections are kept while nobody looks.
-const KEPT: usize = 4;
+use super::PlantAddress;
+use super::idle::Idle;
 
 /// Connections to the plant. A clone has the same ones.
 #[derive(Clone, Debug)]
-pub(crate) struct PlantPool(Arc<Parts>);
-
-#[derive(Debug)]
-struct Parts {
-    address: PlantAddress,
-    idle: Mutex<Vec<Plant>>,
-}
+pub(crate) struct PlantPool(Arc<Idle>);
 
 impl PlantPool {
     /// Connections to the plant at `address`, which are made when somebody looks.
     #[must_use]
     pub(crate) fn new(address: PlantAddress) -> Self {
-        Self(Arc::new(Parts { address, idle: Mutex::default() }))
+        Self(Arc::new(Idle::new(address)))
     }
 
     /// What `look` finds at one moment.
@@ -38,10 +28,7 @@ impl PlantPool {
         let now = self.snapshot()?;
         let found = look(&now);
         if let Some(plant) = now.end() {
-            let mut idle = self.0.idle.lock();
-            if idle.len() < KEPT {
-                idle.push(plant);
-            }
+            self.0.keep(plant);
         }
         found
     }
@@ -51,15 +38,16 @@ impl PlantPool {
     /// # Errors
     /// Like [`Self::look`].
     pub(crate) fn note(&self, deed: Deed<'_>) -> Result<(), StoreError> {
-        Plant::connect(&self.0.address)?.note(deed)
+        self.0.connect()?.note(deed)
     }
 
     /// A snapshot by a connection that was kept, or by a new one if there is none or it has ended meanwhile.
     fn snapshot(&self) -> Result<Snapshot, StoreError> {
-        let kept = self.0.idle.lock().pop();
-        match kept.map(Snapshot::of_plant) {
-            Some(Ok(now)) => Ok(now),
-            _ => Snapshot::of_plant(Plant::connect(&self.0.address)?),
+        match self.0.take().map(Snapshot::of_plant) {
+            Some(Ok(now)) => return Ok(now),
+            Some(Err(_)) => self.0.clear(),
+            None => {}
         }
+        Snapshot::of_plant(self.0.connect()?)
     }
 }

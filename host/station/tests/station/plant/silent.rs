@@ -134,6 +134,21 @@ fn a_board_is_still_held_when_the_connection_that_renews_it_is_dead() {
     assert!(!plant.renew(&lease).unwrap(), "it was given back");
 }
 
+/// Otherwise each of those that are kept would fail a question of its own, perhaps hours later.
+#[test]
+fn a_restart_of_the_plant_fails_one_question_however_many_connections_were_kept() {
+    let server = Server::prepared();
+    let link = PlantLink::new(server.address());
+    let asked = |link: &PlantLink| link.ask(|plant| plant.counts("none"));
+    // The second question comes while the first is under way.
+    assert_eq!(link.ask(|_| asked(&link)).unwrap(), None);
+    let all = "FROM pg_stat_activity WHERE application_name = 'halfrow-station'";
+    until("both connections alone", || server.rows(&format!("SELECT count(*) {all}")) == [["2"]]);
+    server.rows(&format!("SELECT pg_terminate_backend(pid, 60000) {all}"));
+    assert!(asked(&link).unwrap_err().is_away());
+    assert_eq!(asked(&link).unwrap(), None);
+}
+
 /// One after the other, they would all have to wait for an answer before the station could end.
 #[test]
 fn the_hands_of_a_station_do_not_wait_for_each_other_s_answers() {
