@@ -64,7 +64,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         aside: Aside::default(),
     };
     let stop = || signal.by();
-    let out = stuck.iter().try_for_each(|run| work.take_out(&run.line.lane, !arguments.once, &stop));
+    let tries_no_more = || stop().or_else(|| arguments.once.then_some(StoppedBy::Caller));
+    let out = stuck.iter().try_for_each(|run| work.take_out(&run.line.lane, &tries_no_more));
     // The plant lends a board again as soon as it has its run, so nothing is sent before the board is out.
     if stop().is_none() {
         out?;
@@ -121,10 +122,16 @@ fn one_by_one(
             return Ok(());
         }
         let job = claim.job.clone();
+        let tries_no_more = || next_stop().or_else(|| arguments.once.then_some(StoppedBy::Caller));
         tracing::info!("the job {job} is on the board {}", claim.lease.board);
-        match work.judge(claim, stop, &mut |_| ()) {
+        match work.judge(claim, stop, &tries_no_more, &mut |_| ()) {
             Ok(judged) => {
                 print(&if arguments.json { document(&judged) } else { text(&judged) })?;
+                if let Some(error) = judged.not_out
+                    && stop().is_none()
+                {
+                    return Err(error.into());
+                }
                 let JobResult { refused: Some(said), saved, .. } = judged else { continue };
                 let error = WorkError::NotTaken { run: saved.record.run.id.clone(), said };
                 if arguments.once {

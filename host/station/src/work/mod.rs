@@ -57,6 +57,8 @@ pub struct JobResult {
     pub refused: Option<String>,
     /// Whether it counts there, because its job was neither cancelled nor claimed again. None until the plant has it and says so.
     pub counts: Option<bool>,
+    /// Why a board is not out that a process which cannot be killed may still have, if one may.
+    pub not_out: Option<StoreError>,
 }
 
 /// A station that takes jobs.
@@ -112,6 +114,7 @@ impl Work<'_> {
     }
 
     /// Judges the board of a claim, keeps the result, and waits until the plant has it or does not take it, or the claim is lost.
+    /// A plant that is away and must hear that the board is out is tried until `next_stop`.
     ///
     /// # Errors
     /// [`WorkError`] when there is no run. Then others may take the job, at the latest when the claim has run out.
@@ -119,20 +122,20 @@ impl Work<'_> {
         &self,
         claim: Claim,
         stop: &dyn Fn() -> Option<StoppedBy>,
+        next_stop: &dyn Fn() -> Option<StoppedBy>,
         heard: &mut dyn FnMut(Stage<'_>),
     ) -> Result<JobResult, WorkError> {
         let holding = Holding::begin(self.plant.clone(), Held::Job(claim.clone()));
         let mut watched = JobWatch { holding: &holding, stop, heard, is_stuck: false };
         let ended = self.run(&claim, &mut watched);
-        if watched.is_stuck {
-            let board = &claim.lease.board;
-            if let Err(error) = self.take_out(board, true, stop) {
-                tracing::error!(
-                    "the board {board} is not out, and a process that cannot be killed may still have it; restart this \
-                     computer: {}",
-                    Said::of(&error)
-                );
-            }
+        let is_stuck = watched.is_stuck;
+        let not_out = if is_stuck { self.take_out(&claim.lease.board, next_stop).err() } else { None };
+        if let Some(error) = &not_out {
+            tracing::error!(
+                "the board {} is not out, and a process that cannot be killed may still have it; restart this computer: {}",
+                claim.lease.board,
+                Said::of(error)
+            );
         }
         let saved = match ended {
             Ok(saved) => saved,
@@ -149,7 +152,7 @@ impl Work<'_> {
         let is_sent = counts.is_some() || matches!(sent, Sent::Yes);
         let refused = if let Sent::Refused(said) = sent { Some(said.to_string()) } else { None };
         holding.end();
-        Ok(JobResult { claim, is_sent, refused, counts, saved })
+        Ok(JobResult { claim, is_sent, refused, counts, not_out, saved })
     }
 
     /// Gives back a job that came to no run. One whose unit must not be judged ends here; one whose board cannot be judged goes to
@@ -188,14 +191,13 @@ impl Work<'_> {
     }
 
     /// Takes out a board that a process which cannot be killed may still have, so that nobody gets it. Waits for a plant that is
-    /// away if it `may_be_away`, until `stop` ends the wait.
+    /// away until `stop` ends the wait.
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not know it.
     pub(crate) fn take_out(
         &self,
         board: &str,
-        may_be_away: bool,
         stop: &dyn Fn() -> Option<StoppedBy>,
     ) -> Result<(), StoreError> {
         let station = &self.worker.station;
@@ -205,7 +207,7 @@ impl Work<'_> {
         let by = By { operator: OPERATOR, reason: &why };
         loop {
             match self.plant.ask(|plant| plant.take_out(board, by)) {
-                Err(error) if may_be_away && error.may_pass() && stop().is_none() => {
+                Err(error) if error.may_pass() && stop().is_none() => {
                     tracing::warn!("the board {board} is not out yet ({}): {}", &*why, Said::of(&error));
                     rest(AWAY_MS, stop);
                 }

@@ -136,5 +136,5 @@ fn judged(work: &Work<'_>) -> JobResult {
     let claim = work.claim().unwrap().unwrap();
     let begun = Instant::now();
     let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
-    work.judge(claim, &stop, &mut |_| ()).unwrap()
+    work.judge(claim, &stop, &stop, &mut |_| ()).unwrap()
 }

@@ -34,7 +34,7 @@ fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
             assert!(!is_cancelled || plant.cancel_job(&id, engel(&reason("a mistake"))).unwrap());
         }
     };
-    let judged = work.judge(claim, &stop, &mut heard).unwrap();
+    let judged = work.judge(claim, &stop, &stop, &mut heard).unwrap();
     outbox.close();
     assert_eq!(judged.saved.record.conclusion.verdict, Verdict::Pass);
     (judged.is_sent, judged.counts)

@@ -31,7 +31,7 @@ fn is_production(shift: &str) -> bool {
     // Nothing is sent to the plant, so waiting for it would be in vain.
     let stop = || is_over.get().then_some(StoppedBy::Person);
     let mut heard = |stage: Stage<'_>| is_over.set(matches!(stage, Stage::Saving { .. }));
-    work.judge(claim, &stop, &mut heard).unwrap().saved.record.production
+    work.judge(claim, &stop, &stop, &mut heard).unwrap().saved.record.production
 }
 
 #[test]

@@ -6,18 +6,28 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use halfrow::verdict::StoppedBy;
+use halfrow_station::run::Stage;
 use halfrow_station::settings::Settings;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
 
 use super::disk::Worker;
-use super::{any, at_work, job, plan, settings, settings_of, shared, states, with_a_job};
-use crate::common::{Did, free_port, program, until_found};
+use super::{any, at_work, job, judged, plan, settings, settings_of, shared, states, with_a_job};
+use crate::common::{Did, engel, free_port, program, reason, until_found};
 use crate::history::made::Made;
 use crate::lanes::floor::HANG;
 use crate::lanes::stuck::Stuck;
+use crate::plant::server::Server;
 use crate::runs::outlived::Outlived;
+
+/// The settings, in `folder`, of a station whose lanes stay silent and cannot be killed, and their program.
+fn with_stuck_lanes(server: &Server, folder: &Path) -> (Settings, Stuck) {
+    let path = settings(server, folder, "12");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replace("[station]", "[station]\nsilence = 5")).unwrap();
+    (Settings::load_without_lanes(&path).unwrap(), Stuck::in_folder(folder))
+}
 
 #[test]
 fn a_board_whose_lane_cannot_be_killed_is_taken_out_and_not_given_back() {
@@ -25,21 +35,41 @@ fn a_board_whose_lane_cannot_be_killed_is_taken_out_and_not_given_back() {
     let (plan, any) = (plan(), any());
     plant.add_jobs(&job(&plan, &any), 2).unwrap();
     let folder = crate::common::folder();
-    let path = settings(&server, folder.path(), "12");
-    let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replace("[station]", "[station]\nsilence = 5")).unwrap();
-    let settings = Settings::load_without_lanes(&path).unwrap();
-    let stuck = Stuck::in_folder(folder.path());
+    let (settings, stuck) = with_stuck_lanes(&server, folder.path());
     let work = at_work(&settings, stuck.program.clone());
-    let claim = work.claim().unwrap().unwrap();
     // Nothing is sent on here, so the worker waits until the board is lost.
-    let begun = Instant::now();
-    let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
-    let judged = work.judge(claim, &stop, &mut |_| ()).unwrap();
+    let judged = judged(&work);
     assert!(judged.saved.record.conclusion.headline.contains("could not even be killed"), "{judged:?}");
     let out = server.rows("SELECT out FROM board").concat();
     assert!(out[0].contains("a process of station 12 may still have it"), "{out:?}");
     assert_eq!(work.claim().unwrap(), None);
+}
+
+/// The verdict is saved by then, and whoever called waits for it; so does the error of another hand.
+#[test]
+fn a_verdict_does_not_wait_for_a_plant_that_cannot_be_told_that_a_board_is_out_when_no_more_is_begun() {
+    let (server, mut plant, id) = with_a_job();
+    let refuses =
+        "CREATE FUNCTION refuses() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RAISE 'not now'; END $$;
+        CREATE TRIGGER refuses BEFORE UPDATE OF out ON board FOR EACH ROW EXECUTE FUNCTION refuses()";
+    server.client("plant").batch_execute(refuses).unwrap();
+    let folder = crate::common::folder();
+    let (settings, stuck) = with_stuck_lanes(&server, folder.path());
+    let work = at_work(&settings, stuck.program.clone());
+    let claim = work.claim().unwrap().unwrap();
+    let begun = Instant::now();
+    let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
+    let mut heard = |stage: Stage<'_>| {
+        if matches!(stage, Stage::Saving { is_stuck: true, .. }) {
+            // Nothing is sent on here, so the worker would wait until the job is lost.
+            assert!(plant.cancel_job(&id, engel(&reason("a mistake"))).unwrap());
+        }
+    };
+    let judged = work.judge(claim, &stop, &|| Some(StoppedBy::Caller), &mut heard).unwrap();
+    assert!(stop().is_none(), "it ended by itself");
+    assert!(judged.saved.record.conclusion.headline.contains("could not even be killed"), "{judged:?}");
+    assert!(judged.not_out.is_some_and(|why| why.to_string().contains("refuses to take a board out")));
+    assert_eq!(server.rows("SELECT out FROM board"), [["NULL"]], "the control");
 }
 
 /// A station without its plant, in whose lane `shelf-0` a process outlived it: its settings, in `folder`.

@@ -267,7 +267,7 @@ fn a_worker_compares_the_clocks_before_its_first_run() {
     // Nothing sends the run if there is one.
     let begun = Instant::now();
     let stop = || (begun.elapsed() > Duration::from_secs(20)).then_some(StoppedBy::Person);
-    let refused = work.judge(work.claim().unwrap().unwrap(), &stop, &mut |_| ()).unwrap_err();
+    let refused = work.judge(work.claim().unwrap().unwrap(), &stop, &stop, &mut |_| ()).unwrap_err();
     assert!(
         matches!(&refused, WorkError::Run(RunError::NotBegun(why)) if why.to_string().contains("60 min apart"))
     );
