@@ -160,6 +160,23 @@ impl Folder {
     /// # Errors
     /// [`StoreError`] when another program has it.
     pub(crate) fn lock(&self) -> Result<File, StoreError> {
+        let until = Instant::now() + LEAVES;
+        let mut file = self.opened_to_lock()?;
+        loop {
+            match file.try_lock() {
+                Ok(()) if generation::is_named(&file, &self.lock_file()) => return Ok(file),
+                // A restore that failed removes the one that it made: its lock keeps nobody out any more.
+                Ok(()) if Instant::now() < until => file = self.opened_to_lock()?,
+                Err(TryLockError::WouldBlock) if Instant::now() < until => thread::sleep(AGAIN),
+                Ok(()) | Err(TryLockError::WouldBlock) => {
+                    return Err(StoreError::InUse { folder: self.0.clone() });
+                }
+                Err(TryLockError::Error(source)) => return Err(self.refused(source)),
+            }
+        }
+    }
+
+    fn opened_to_lock(&self) -> Result<File, StoreError> {
         // What a link leads to would be overwritten, and the other end of a pipe waited for.
         let flags = (OFlag::O_NOFOLLOW | OFlag::O_NONBLOCK).bits();
         let path = self.lock_file();
@@ -168,16 +185,7 @@ impl Folder {
         let other =
             || io::Error::new(io::ErrorKind::InvalidInput, "station.lock there is a link or no regular file");
         let file = if is_other { Err(other()) } else { file };
-        let file = file.map_err(|source| self.refused(source))?;
-        let until = Instant::now() + LEAVES;
-        loop {
-            match file.try_lock() {
-                Ok(()) => return Ok(file),
-                Err(TryLockError::WouldBlock) if Instant::now() < until => thread::sleep(AGAIN),
-                Err(TryLockError::WouldBlock) => return Err(StoreError::InUse { folder: self.0.clone() }),
-                Err(TryLockError::Error(source)) => return Err(self.refused(source)),
-            }
-        }
+        file.map_err(|source| self.refused(source))
     }
 
     /// The connection that writes. It does not fold the log into the database by itself, nor when it closes unless told to.
