@@ -143,11 +143,13 @@ impl Folder {
     }
 
     pub(crate) fn refused(&self, source: io::Error) -> StoreError {
-        let is_forbidden = source.kind() == io::ErrorKind::PermissionDenied;
-        match self.refuse_other_users() {
-            Err(others) if is_forbidden => others,
-            _ => StoreError::Folder { folder: self.0.clone(), source },
+        // Only then, because it asks the disk, which may be failing, about each folder of evidence.
+        if source.kind() == io::ErrorKind::PermissionDenied
+            && let Err(others) = self.refuse_other_users()
+        {
+            return others;
         }
+        StoreError::Folder { folder: self.0.clone(), source }
     }
 
     /// The file that is locked by the program that writes.
