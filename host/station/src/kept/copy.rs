@@ -101,7 +101,7 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
         looked_at => looked_at?,
     }
     let (is_new, mut lock) = (!to.exists(), None);
-    let restored = made(to, |aside| {
+    made(to, |aside| {
         let refused = |source| CopyError::Io { path: to.to_owned(), source };
         // No station can start there before all is in place.
         let held = lock.insert(Folder::new(to).lock()?);
@@ -116,11 +116,7 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
             fs::remove_file(new.lock_file()).map_err(refused)?;
         }
         Ok(copied)
-    });
-    if is_new && restored.is_err() && lock.is_some() {
-        let _ = fs::remove_file(Folder::new(to).lock_file()).and_then(|()| fs::remove_dir(to));
-    }
-    restored
+    })
 }
 
 /// Fills the folder `to`, wholly or not at all: `fill` is given a place aside, in the folder, which keeps stations from starting there.
@@ -138,10 +134,18 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
     if to.is_file() || (is_there && holds_anything(&to).map_err(refused)?) {
         return Err(exists());
     }
-    if !is_there {
-        private_folder(&to).map_err(refused)?;
-        synced(parent).map_err(StoreError::from)?;
+    if is_there {
+        return filled(&to, fill);
     }
+    private_folder(&to).map_err(refused)?;
+    let named = synced(parent).map_err(|error| StoreError::from(error).into());
+    named.and_then(|()| filled(&to, fill)).inspect_err(|_| remove_made(&to))
+}
+
+/// Fills the folder `to`, which is there.
+fn filled(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Result<Copied, CopyError> {
+    let refused = |source| CopyError::Io { path: to.to_owned(), source };
+    let aside = to.join(ASIDE);
     match private_folder(&aside) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
             return Err(CopyError::UnderWay { path: aside });
@@ -149,15 +153,21 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
         made => made.map_err(refused)?,
     }
     let copied = fill(&aside).and_then(|copied| {
-        move_all(&entries(&aside, &to).map_err(refused)?, &to)?;
+        move_all(&entries(&aside, to).map_err(refused)?, to)?;
         Ok(copied)
     });
     // The next attempt names what cannot be removed.
     let _ = fs::remove_dir_all(&aside);
-    if !is_there && copied.is_err() {
-        let _ = fs::remove_dir(&to);
-    }
     copied
+}
+
+/// Removes the folder `to`, which was made for a copy that failed, unless something else has begun in it.
+fn remove_made(to: &Path) {
+    if holds_anything(to).is_ok_and(|holds| !holds) {
+        let _ = fs::remove_file(to.join(LOCK));
+    }
+    // The next attempt names what cannot be removed.
+    let _ = fs::remove_dir(to);
 }
 
 /// Makes a folder that is for nobody else, whatever the umask, because a copy has all that its station keeps from others.

@@ -99,6 +99,21 @@ fn of_a_copy_whose_names_the_disk_did_not_take_nothing_stays() {
     }
 }
 
+/// A station could begin anew in it, since nothing marks it, and no later try would replace that.
+#[test]
+fn of_a_folder_that_was_made_for_a_copy_nothing_stays_when_the_copy_cannot_begin() {
+    let (made, _, place) = failed();
+    let [copy, to] = ["copy", "to"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy).unwrap();
+    let mut left = ["fsync:error=EIO:when=1", "mkdir:error=ENOSPC:when=2", "flock:error=ENOLCK"].to_vec();
+    left.retain(|refused| {
+        let did = restored(&copy, &to, &format!("inject={refused}"));
+        assert_eq!(did.code, Some(3), "{refused}: {did:?}");
+        fs::remove_dir_all(&to).is_ok()
+    });
+    assert_eq!(left, [""; 0]);
+}
+
 /// As where the power fails: a station that began anew would be in the copy's way.
 #[test]
 fn no_station_begins_where_a_restore_was_killed_that_made_its_folder() {
