@@ -38,7 +38,10 @@ pub enum CopyError {
         path: PathBuf,
     },
     /// Another copy is being made in the folder, or its program was killed.
-    #[error("{} is there; remove it, if nobody is making a copy just now", path.display())]
+    #[error(
+        "{} is there; if nobody is making a copy just now, remove it and what was already moved out of it into its folder",
+        path.display()
+    )]
     UnderWay {
         /// What is there.
         path: PathBuf,
