@@ -107,6 +107,7 @@ codes::codes! {
         DatedAhead [minutes] => "last-run-dated-ahead",
         BeingJudged [serial, lane] => "unit-being-judged",
         NotOpen [run] => "run-not-open",
+        UnknownProcess [spool, process] => "lane-process-unknown",
         ReadsOtherwise [run] => "run-reads-otherwise",
         = Certificate,
         = Blob,

@@ -38,12 +38,13 @@ const BY_TYPE: [(&str, Whose); 7] = [
 ];
 
 /// The same by the code, where that says more than the type.
-const BY_CODE: [(&str, Whose); 10] = [
+const BY_CODE: [(&str, Whose); 11] = [
     ("plant-refuses", Whose::Station("plant")),
     ("plant-without-record", Whose::Station("plant")),
     ("unit-being-judged", Whose::Unit),
     ("clocks-apart", Whose::Station("clock")),
     ("last-run-dated-ahead", Whose::Station("clock")),
+    ("lane-process-unknown", Whose::Station(OTHER)),
     ("plan-file-other", Whose::Station("plan")),
     ("outbox-too-full", Whose::Station("plant")),
     ("disk-too-full", Whose::Station(STORE)),
@@ -167,7 +168,7 @@ mod tests {
         let of_store: Vec<_> = of("StoreError").iter().map(|(code, _)| counted(code)).collect();
         let not_of_it = of_store.iter().filter(|of| **of != Some("store")).count();
         // Whoever adds a code says here whether it is about the disk or the database.
-        assert_eq!((of_store.len(), not_of_it), (27, 5), "a unit, two clocks and the plant twice");
+        assert_eq!((of_store.len(), not_of_it), (28, 6), "a unit, two clocks, a process and the plant twice");
         assert_eq!(["board-held", "lane-busy", ""].map(counted), [Some("other"); 3]);
     }
 

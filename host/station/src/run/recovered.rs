@@ -110,10 +110,10 @@ fn stuck(folder: &Folder) -> Result<Vec<UnitRun>, StoreError> {
     let path = folder.spools();
     let listed = || fs::read_dir(&path)?.collect::<io::Result<Vec<_>>>();
     let spools = listed().map_err(|source| BlobError::Folder { path: path.clone(), source })?;
-    let stuck = spools.into_iter().filter(|spool| left_behind(&spool.path()).is_some());
-    let of_rows = |spool: fs::DirEntry| {
-        let run = spool.file_name().to_string_lossy().into_owned();
-        run_of(&Snapshot::take(folder)?, &run)?.ok_or(StoreError::ReadsOtherwise { run })
+    let stuck = spools.into_iter().filter_map(|spool| Some((left_behind(&spool.path())?, spool)));
+    let of_rows = |(process, spool): (u32, fs::DirEntry)| {
+        let row = run_of(&Snapshot::take(folder)?, &spool.file_name().to_string_lossy())?;
+        row.ok_or_else(|| StoreError::UnknownProcess { spool: spool.path(), process })
     };
     stuck.map(of_rows).collect()
 }

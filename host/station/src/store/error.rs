@@ -282,6 +282,19 @@ pub enum StoreError {
         /// The run.
         run: String,
     },
+    /// A lane's process that outlived its station is of a run that the database does not have, as where an earlier copy of it was put
+    /// back: nobody knows which board it may still have.
+    #[error(
+        "{} is of a run that station.db does not have, and its lane may still have a board; end the process {process}, or \
+         restart the computer, and start again",
+        spool.display()
+    )]
+    UnknownProcess {
+        /// What the run has written.
+        spool: PathBuf,
+        /// The id of the process.
+        process: u32,
+    },
     /// The run read back otherwise than it was written.
     #[error("the run {run} reads back otherwise than it was written; check the disk")]
     ReadsOtherwise {

@@ -129,7 +129,7 @@ fn a_lane_is_as_before_once_its_process_has_ended() {
 #[test]
 fn a_run_that_was_closed_is_told_though_the_process_of_another_is_in_no_lane_that_is_known() {
     let mut made = Made::new();
-    let _outlived = Outlived::of(&mut made, "1");
+    let outlived = Outlived::of(&mut made, "1");
     let spools = made.folder().spools();
     let spool = fs::read_dir(&spools).unwrap().next().unwrap().unwrap().path();
     let unknown = spools.join("0".repeat(36));
@@ -138,7 +138,9 @@ fn a_run_that_was_closed_is_told_though_the_process_of_another_is_in_no_lane_tha
     let (code, complained) = run(&made.closed(), "2");
     assert_eq!(code, 3, "{complained}");
     assert!(complained.contains("of CAT00001 was found open, and is ERROR"), "{complained}");
-    assert!(complained.contains("reads back otherwise"), "{complained}");
+    let place = format!("{} is of a run that station.db does not have", unknown.display());
+    assert!(complained.contains(&place), "{complained}");
+    assert!(complained.contains(&format!("end the process {}", outlived.0.id())), "{complained}");
     assert!(!complained.contains("the board not touched"), "no run was to begin yet: {complained}");
 }
 
