@@ -8,8 +8,7 @@ use halfrow_protocol::message::{Burst, BurstMode};
 
 use super::price::clock_hz;
 use crate::board::{Bursts, Capabilities, Datapath, frame_blanking, frame_clocks, row_blanking};
-use crate::tables::Generation;
-use crate::tables::datapath_of;
+use crate::tables::{Generation, datapath_of};
 
 /// The pixel clock, in hertz, that is assumed for a board that names none: that of the paper's sensor.
 pub(in crate::run) const USUAL_CLOCK: u32 = 96_000_000;

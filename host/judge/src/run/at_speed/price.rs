@@ -10,8 +10,7 @@ use super::{FEW_AT_SPEED, USUAL, corners};
 use crate::board::{BoardNature, Bursts, Capabilities, Datapath, row_blanking};
 use crate::run::plan::prices::Prices;
 use crate::run::{AtSpeed, Plan};
-use crate::tables::Generation;
-use crate::tables::datapath_of;
+use crate::tables::{Generation, datapath_of};
 
 /// The payload of a request for records, and of its reply without the records.
 const LOOK: (usize, usize) = (4, 10);

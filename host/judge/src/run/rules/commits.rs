@@ -14,8 +14,8 @@ use crate::tables::Generation;
 /// Generations that differ in every bit.
 const FIRST: u8 = 0x55;
 const SECOND: u8 = 0xaa;
-/// The frame with which the second one takes effect.
-const FRAME: u16 = 0x5a5a;
+/// The frame with which tables are committed. Whatever bit a board loses shows in it or in its inverse.
+pub(super) const FRAME: u16 = 0x5a5a;
 /// The most row banks at which tables are changed.
 const BANKS: u8 = 8;
 
@@ -146,7 +146,6 @@ impl Rules<'_, '_> {
     fn at_each_bank(&mut self) -> Result<(), End> {
         let (mut active, mut next) = ((FIRST, 0), (SECOND, 1));
         for before in 0..u16::from(self.capabilities.row_banks_out.min(BANKS)) {
-            // Two frames that differ in every bit.
             let frame = if before % 2 == 0 { FRAME } else { !FRAME };
             self.upload(next.1)?;
             self.commit(next.1, next.0, frame)?;

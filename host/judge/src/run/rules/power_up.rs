@@ -4,13 +4,12 @@ use halfrow_model::{NODES, RowFactor};
 use halfrow_protocol::message::{Bank, Commit, NODE_BYTES, RefusalCode, Request, RowPlace, Table};
 
 use super::Rules;
+use super::commits::FRAME;
 use crate::result::Rule;
 use crate::run::findings::End;
 
 /// The generation of tables that no frame uses.
 const GENERATION: u8 = 0xff;
-/// The frame for which they are committed.
-const FRAME: u16 = 0x5a5a;
 
 impl Rules<'_, '_> {
     pub(super) fn power_up(&mut self) -> Result<(), End> {
@@ -41,7 +40,6 @@ impl Rules<'_, '_> {
             RefusalCode::TableCrc,
             Table::RowFactors as u16,
         )?;
-        // Frames that differ in every bit.
         for first_frame in [FRAME, !FRAME] {
             self.waited_for(Commit { first_frame, ..right })?;
         }
