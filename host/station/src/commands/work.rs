@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         aside: Aside::default(),
     };
     let stop = || signal.by();
-    let tries_no_more = || stop().or_else(|| arguments.once.then_some(StoppedBy::Caller));
+    let tries_no_more = || ended_or(&stop, arguments.once);
     let out = stuck.iter().try_for_each(|run| work.take_out(&run.line.lane, &tries_no_more));
     // The plant lends a board again as soon as it has its run, so nothing is sent before the board is out.
     if stop().is_none() {
@@ -80,11 +80,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// Tells every hand whether its run is to end.
 type Stop<'a> = &'a (dyn Fn() -> Option<StoppedBy> + Sync);
 
+/// Who ends what goes on until `stop`, which is this program itself if it `is_over`.
+fn ended_or(stop: Stop<'_>, is_over: bool) -> Option<StoppedBy> {
+    stop().or_else(|| is_over.then_some(StoppedBy::Caller))
+}
+
 /// Judges `at_once` jobs at a time. When one hand cannot go on, the others finish the boards that they have, and take
 /// no more.
 fn take_jobs(work: &Work<'_>, arguments: &Arguments, at_once: u32, stop: Stop<'_>) -> Result<(), Failure> {
     let is_over = AtomicBool::new(false);
-    let next_stop = || stop().or_else(|| is_over.load(Ordering::Relaxed).then_some(StoppedBy::Caller));
+    let next_stop = || ended_or(stop, is_over.load(Ordering::Relaxed));
     let hand = || {
         let ended =
             guarded(|| one_by_one(work, arguments, stop, &next_stop)).map_err(Failure::error).flatten();
@@ -122,7 +127,7 @@ fn one_by_one(
             return Ok(());
         }
         let job = claim.job.clone();
-        let tries_no_more = || next_stop().or_else(|| arguments.once.then_some(StoppedBy::Caller));
+        let tries_no_more = || ended_or(next_stop, arguments.once);
         tracing::info!("the job {job} is on the board {}", claim.lease.board);
         match work.judge(claim, stop, &tries_no_more, &mut |_| ()) {
             Ok(judged) => {

@@ -8,20 +8,19 @@ use halfrow::words::plain;
 use nix::errno::Errno;
 use nix::unistd::{AccessFlags, Uid, User, access, geteuid};
 
-use super::folder::LOCK;
+use super::folder::log_of;
 use super::{Folder, StoreError};
-
-/// What a run's result needs, by its name in the folder.
-const NEEDED: [&str; 6] = [LOCK, "station.db", "station.db-wal", "station.db-shm", "spool", "blobs"];
 
 impl Folder {
     /// Refuses a folder that is another user's, or has something of another user's that this one may not change, as where root
     /// once worked in it. What root made among the evidence is otherwise met by one record in 256, long after the cause.
     pub(super) fn refuse_other_users(&self) -> Result<(), StoreError> {
-        let places = [self.0.clone()].into_iter().chain(NEEDED.map(|name| self.0.join(name)));
+        let (folder, database) = (self.0.clone(), self.database());
+        let (log, shared) = (log_of(&database), database.with_extension("db-shm"));
+        let needed = [folder, self.lock_file(), database, log, shared, self.spools(), self.evidence()];
         let evidence =
             fs::read_dir(self.evidence()).into_iter().flatten().flatten().map(|entry| entry.path());
-        places.chain(evidence).try_for_each(|path| self.refuse_other_user(&path))
+        needed.into_iter().chain(evidence).try_for_each(|path| self.refuse_other_user(&path))
     }
 
     fn refuse_other_user(&self, path: &Path) -> Result<(), StoreError> {
