@@ -3,6 +3,17 @@
 use halfrow_ft2232h::{ChipOptions, Plugged};
 use halfrow_tests::usb::{chip, uart, verify};
 
+/// The board that is plugged in passes, and nothing from it came damaged.
+fn passes_undamaged() {
+    let ended = verify("usb");
+    assert_eq!(
+        (ended.code, ended.json()["link"]["damaged_in"].as_u64()),
+        (Some(0), Some(0)),
+        "{}",
+        ended.headline()
+    );
+}
+
 #[test]
 #[ignore = "needs scripts/in-linux"]
 fn a_sound_board_behind_a_uart_passes() {
@@ -19,13 +30,7 @@ fn a_sound_board_at_a_port_of_full_speed_passes() {
     for options in [ChipOptions::default(), uart()] {
         let options = ChipOptions { is_slowed: true, ..options };
         let _board = Plugged::new(chip(options, ",speed=1000000"), 0).unwrap();
-        let ended = verify("usb");
-        assert_eq!(
-            (ended.code, ended.json()["link"]["damaged_in"].as_u64()),
-            (Some(0), Some(0)),
-            "{}",
-            ended.headline()
-        );
+        passes_undamaged();
     }
 }
 
@@ -49,11 +54,5 @@ fn a_rate_that_is_not_the_board_s_is_seen_on_the_line() {
 fn what_lay_in_the_chip_before_does_no_harm() {
     let options = ChipOptions { stale: vec![0x55; 3000], ..ChipOptions::default() };
     let _board = Plugged::new(chip(options, ""), 0).unwrap();
-    let ended = verify("usb");
-    assert_eq!(
-        (ended.code, ended.json()["link"]["damaged_in"].as_u64()),
-        (Some(0), Some(0)),
-        "{}",
-        ended.headline()
-    );
+    passes_undamaged();
 }
