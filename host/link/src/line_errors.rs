@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Errors on the chip's pins, counted in packets that report them.
+/// Errors on the chip's pins, counted in packets that report them, or by the driver of a serial port.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LineErrors {
     /// Bytes were lost because the host did not fetch them in time.

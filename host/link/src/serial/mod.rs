@@ -1,6 +1,7 @@
 //! A serial port as a link: locked for this program, and never waited for longer than a deadline.
 
 mod boards;
+mod driver;
 mod error;
 mod holder;
 mod options;
@@ -20,8 +21,10 @@ use super::access::how_to_get_access;
 use super::descriptor::{Gone, Pump, never_block};
 use super::sysfs::{is_without_file, usb_device};
 use super::{HEED, Link, LinkError, OpenError, bytes_per_second};
+use crate::LineErrors;
 use crate::ftdi::{self, Speed};
 use crate::target::Target;
+use driver::{Counts, hold_nothing_back};
 use options::SerialOptions;
 
 pub use boards::SerialBoard;
@@ -29,7 +32,7 @@ pub use error::SerialError;
 pub use holder::{Holder, holders};
 pub(crate) use holder::{by, keepers};
 
-/// After this silence no stale byte is under way any more: a USB chip holds bytes back for 16 ms.
+/// After this silence no stale byte is under way any more: a USB chip holds bytes back for up to 16 ms, if it cannot be told otherwise.
 const QUIET: Duration = Duration::from_millis(20);
 /// Then draining stops, even if the board goes on talking; the protocol recognises what is stale.
 const LONGEST_DRAIN: Duration = Duration::from_millis(200);
@@ -42,6 +45,9 @@ pub(crate) struct SerialLink {
     path: PathBuf,
     options: SerialOptions,
     opened: Instant,
+    /// What the driver had counted when the port was set.
+    counted_before: Option<Counts>,
+    line_errors: LineErrors,
 }
 
 impl SerialLink {
@@ -72,10 +78,30 @@ impl SerialLink {
         let mut port = lock(&path, options)?;
         set_lines(&mut port, options);
         check_taken_rate(&port, &path, options.baud)?;
+        if let Err(error) = hold_nothing_back(&port) {
+            tracing::debug!("how long the port holds bytes back is left as it is: {error}");
+        }
         never_block(port.as_raw_fd()).map_err(|error| failed(&path, error))?;
-        let mut link = Self { port, pump: Pump::default(), path, options, opened: Instant::now() };
+        let mut link = Self {
+            counted_before: Counts::of(&port),
+            line_errors: LineErrors::default(),
+            port,
+            pump: Pump::default(),
+            path,
+            options,
+            opened: Instant::now(),
+        };
         link.drain();
         Ok(link)
+    }
+
+    /// Notes what the driver has counted since. A port that is gone says nothing any more, and what was noted stays.
+    fn note_line_errors(&mut self) {
+        if let Some(before) = &self.counted_before
+            && let Some(now) = Counts::of(&self.port)
+        {
+            self.line_errors = now.since(before);
+        }
     }
 
     /// Drops what is in the buffers, and what still comes out of the chip after that.
@@ -112,6 +138,7 @@ impl Link for SerialLink {
         wait: Duration,
     ) -> Result<usize, LinkError> {
         let moved = self.pump.exchange(self.port.as_raw_fd(), outgoing, incoming, wait.min(HEED));
+        self.note_line_errors();
         moved.map_err(|gone| match gone {
             Gone::HungUp => LinkError::Unplugged { link: self.name(), at: self.now() },
             Gone::Failed(source) => LinkError::Failed { link: self.name(), at: self.now(), source },
@@ -136,6 +163,10 @@ impl Link for SerialLink {
 
     fn name(&self) -> String {
         format!("the serial port {} ({} baud)", self.path.display(), self.options.baud)
+    }
+
+    fn line_errors(&self) -> LineErrors {
+        self.line_errors
     }
 }
 
