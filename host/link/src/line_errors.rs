@@ -45,7 +45,8 @@ impl LineErrors {
                 Some("The chip sees the board hold its line low: check power and bitstream.")
             }
             Self { overrun: 1.., .. } => Some(
-                "The chip lost bytes that nobody fetched: use flow=rtscts, or a lower rate if the board has no RTS.",
+                "The chip lost bytes that nobody fetched: give it a USB port of its own, without a hub or a virtual machine \
+                 between, and use flow=rtscts if the board drives CTS, which a ULX3S does not.",
             ),
             Self { parity: 1.., .. } => {
                 Some("The chip sees wrong parity: the board must send eight bits without.")
