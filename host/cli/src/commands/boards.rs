@@ -1,5 +1,7 @@
 //! `halfrow boards`
 
+use std::time::Duration;
+
 use clap::Args;
 use serde::Serialize;
 
@@ -58,9 +60,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         arguments.targets.iter().map(Found::named).collect()
     };
     if arguments.ask {
-        for device in devices.iter_mut().filter(|device| device.is_open_to_us()) {
-            ask(device, halfrow::probe).map_err(Failure::call)?;
-        }
+        ask_all(&mut devices, halfrow::probe).map_err(Failure::call)?;
     }
     let mut entries: Vec<_> = devices.iter().map(Entry::Device).collect();
     let mut bitstreams: &[BitstreamBoard] = &[];
@@ -75,6 +75,22 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         print(&lines.join("\n"))?;
     }
     Ok(Exit::Pass)
+}
+
+/// How long udev may take until a serial port has its names and its owner again.
+const UDEV: Duration = Duration::from_secs(2);
+
+/// Asks every device that can be opened. Serial ports come first: asking a chip takes its ports away, and if they were asked after it,
+/// udev would not have seen yet that they are back. Nor would it for the command that is called next, so that is awaited.
+fn ask_all(devices: &mut [Found], probe: impl Fn(&Target) -> Answer) -> Result<(), TargetError> {
+    let mut asked: Vec<_> = devices.iter_mut().filter(|device| device.is_open_to_us()).collect();
+    asked.sort_by_key(|device| device.takes_ports());
+    let takes_ports = asked.last().is_some_and(|device| device.takes_ports());
+    asked.into_iter().try_for_each(|device| ask(device, &probe))?;
+    if takes_ports {
+        discovery::await_ports(devices, UDEV);
+    }
+    Ok(())
 }
 
 /// Asks `device` whether it is a board. If it answers at another target than the port's own, it is listed under that one.
@@ -153,6 +169,8 @@ fn state(device: &Found) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::cell::RefCell;
+
     use halfrow::link::{Holder, UsbDevice};
 
     use super::*;
@@ -180,6 +198,22 @@ mod tests {
         };
         ask(&mut device, probe).unwrap();
         device
+    }
+
+    /// The chips are found first, and stay first in the list.
+    #[test]
+    fn serial_ports_are_asked_before_the_chips_that_take_them_away() {
+        let targets = ["usb:HR1", "usb:HR2", "serial:/dev/null", "tcp:bench:3001"];
+        let mut devices =
+            targets.map(|target| Found { access: Access::Free, ..Found::named(&target.parse().unwrap()) });
+        let asked = RefCell::new(Vec::new());
+        let probe = |target: &Target| {
+            asked.borrow_mut().push(target.to_string());
+            Answer::Silent
+        };
+        ask_all(&mut devices, probe).unwrap();
+        assert_eq!(asked.into_inner(), ["serial:/dev/null", "tcp:bench:3001", "usb:HR1", "usb:HR2"]);
+        assert_eq!(devices.map(|device| device.target), targets);
     }
 
     /// Only root sees the programs of other users.

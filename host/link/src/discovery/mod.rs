@@ -5,9 +5,12 @@ pub(crate) mod serial_ports;
 pub(crate) mod usb_chips;
 
 use std::path::PathBuf;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
+use crate::access::Kept;
 use crate::ftdi::{self, Speed};
 use crate::kinds::{self, KINDS};
 use crate::{BoardKind, Holder, SerialBoard, Target, UsbDevice};
@@ -18,6 +21,20 @@ pub use answer::Answer;
 #[must_use]
 pub fn find() -> Vec<Found> {
     KINDS.iter().flat_map(|kind| (kind.find)()).collect()
+}
+
+/// How often to look whether a port is back.
+const LOOK: Duration = Duration::from_millis(10);
+
+/// Waits until every serial port of `found` that could be opened can be opened again, at most for `limit`. Whoever lets go of a USB
+/// chip gets its serial ports back at once, but under another owner and without their stable names until udev has seen them.
+pub fn await_ports(found: &[Found], limit: Duration) {
+    let ports: Vec<_> =
+        found.iter().filter(|device| device.is_open_to_us()).filter_map(Found::port).collect();
+    let begun = Instant::now();
+    while ports.iter().any(|port| Kept::is(port).is_some()) && begun.elapsed() < limit {
+        thread::sleep(LOOK);
+    }
 }
 
 /// Something that could be a board.
@@ -95,6 +112,18 @@ impl Found {
         Some(format!("{},board={}", self.target, board.name))
     }
 
+    /// The serial port to which its target leads, if it leads to one.
+    fn port(&self) -> Option<PathBuf> {
+        let target: Target = self.target.parse().ok()?;
+        target.address.filter(|_| target.kind == "serial").map(PathBuf::from)
+    }
+
+    /// Whether asking it takes away, for as long, the serial ports that the system's driver made of its chip.
+    #[must_use]
+    pub fn takes_ports(&self) -> bool {
+        self.target.split([':', ',']).next() == Some("usb")
+    }
+
     /// Whether it is worth asking.
     #[must_use]
     pub fn is_open_to_us(&self) -> bool {
@@ -118,6 +147,40 @@ mod tests {
             interface: None,
         };
         Found { usb: Some(usb), ..Found::named(&target.parse().unwrap()) }
+    }
+
+    #[test]
+    fn only_a_chip_without_the_serial_driver_takes_ports() {
+        for (target, takes) in [
+            ("usb", true),
+            ("usb:FT3XYZ", true),
+            ("usb,flow=none", true),
+            ("serial:/dev/ttyUSB0,board=ulx3s", false),
+            ("serial:usb", false),
+            ("tcp:usb:3001", false),
+        ] {
+            assert_eq!(Found::named(&target.parse().unwrap()).takes_ports(), takes, "{target}");
+        }
+    }
+
+    /// As udev names and gives away a port, which here takes until the other thread runs.
+    #[test]
+    fn ports_that_could_be_opened_are_awaited_and_no_others() {
+        const LONG: Duration = Duration::from_secs(600);
+        let folder = tempfile::tempdir().unwrap();
+        let port = |name: &str, access| {
+            let target = format!("serial:{},board=ulx3s", folder.path().join(name).display());
+            Found { access, ..Found::named(&target.parse().unwrap()) }
+        };
+        let ports = [port("ours", Access::Free), port("other", Access::Missing)];
+        let ours = folder.path().join("ours");
+        thread::scope(|scope| {
+            scope.spawn(|| std::fs::write(&ours, "").unwrap());
+            await_ports(&ports, LONG);
+            assert!(ours.exists());
+        });
+        // One that stays away is not waited for any longer.
+        await_ports(&[port("gone", Access::Free)], Duration::ZERO);
     }
 
     #[test]
