@@ -14,6 +14,9 @@ use serde_json::{Value, json};
 /// What openFPGALoader 0.10 prints without a board, each line on the stream that it uses.
 const NO_BOARD: &str = "echo 'JTAG init failed with: unable to open ftdi device'; \
                         echo 'unable to open ftdi device: -3 (device not found)' >&2; exit 1";
+/// What it prints if the file is for another FPGA (its issue 373).
+const OTHER_FPGA: &str = "echo 'bitstream has 0x41111043 hardware requires 0x41113043'; \
+                          echo 'Error: Failed to program FPGA: std::exception' >&2; exit 1";
 /// A loader that works, and notes its arguments.
 const WORKS: &str = r#"printf '%s\n' "$@" >called; printf 'Loading: 40%%\rLoading: 100%%\nDone\n'"#;
 /// A loader that hangs with a child, whose process id it has completely written.
@@ -201,6 +204,22 @@ fn a_loader_that_fails_is_quoted() {
         assert!(said.contains(line), "{said}");
     }
     assert_eq!(error["parameters"]["call"], "openFPGALoader -b minispartan6 top.bit");
+}
+
+#[test]
+fn who_loads_a_file_for_another_fpga_is_told_which_it_is_for_and_by_what_else_to_load_it() {
+    let folder = with_loader(OTHER_FPGA);
+    let remedy = |arguments: &[&str]| {
+        let error = refused(&folder, arguments, 3, "loader-failed");
+        error["remedy"].as_str().unwrap().to_owned()
+    };
+    let unknown = remedy(&["top.bit", "--onto", "ulx3s"]);
+    assert!(unknown.contains("the one that the file was built for"), "{unknown}");
+    assert!(unknown.contains("`fujprog top.bit`"), "{unknown}");
+    recorded(&folder, "minispartan6plus", "00000001");
+    let known = remedy(&["top.bit"]);
+    assert!(known.contains("the xc6slx25 that the file was built for"), "{known}");
+    assert!(known.contains("`xc3sprog -c ftdi top.bit`"), "{known}");
 }
 
 #[test]

@@ -68,7 +68,7 @@ codes::codes! {
         BuiltIn [target] => "bitstream-for-built-in-board",
         LoaderMissing [other] => "loader-missing",
         LoaderNotStarted [call] => "loader-not-started",
-        LoaderFailed [call, said] => "loader-failed",
+        LoaderFailed [call, said, device, other] => "loader-failed",
         LoaderLate [call, deadline, said] => "loader-late",
         Stopped [call, by] => "loading-stopped",
         NotAwaited [by] => "loaded-board-not-awaited",

@@ -112,6 +112,12 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "do what its cause says, then run again: the board or its link chip may be wrong",
     ),
     ("link-without-board", "plug the board in at the far end, and check the device that its ser2net names"),
+    (
+        "loader-failed",
+        "check that the board is plugged in and powered, that you may open it (scripts/70-halfrow.rules), that it is the board that \
+         was named, and that its FPGA is, by the print on it, the one that the file was built for, or load the file by hand with \
+         `OTHER`",
+    ),
     ("mem-depth-unknown", "make the file again with `halfrow tables` and --bits 8, 10 or 12"),
     ("mem-file-wrong", "do what its cause says, or make the file again with `halfrow tables`"),
     ("message-malformed", "load a bitstream that this halfrow is made for"),

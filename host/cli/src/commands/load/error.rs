@@ -52,9 +52,10 @@ pub(in crate::commands) enum LoadError {
     /// The program that loads the bitstream failed.
     #[error(
         "`{call}` failed ({status}): {said}; check that the board is plugged in and powered, that you may open it \
-         (scripts/70-halfrow.rules), and that it is the board that was named"
+         (scripts/70-halfrow.rules), that it is the board that was named, and that its FPGA is, by the print on it, the {} \
+         that the file was built for, or load the file by hand with `{other}`", device.as_deref().unwrap_or("one")
     )]
-    LoaderFailed { call: String, status: ExitStatus, said: String },
+    LoaderFailed { call: String, status: ExitStatus, said: String, device: Option<String>, other: String },
     /// The program that loads the bitstream took too long and was stopped.
     #[error(
         "`{call}` was killed after {deadline} s: {said}; check the cable and that nothing else uses the board's JTAG, or \

@@ -15,6 +15,7 @@ use nix::unistd::Pid;
 use signal_hook::consts::SIGCHLD;
 
 use super::LoadError;
+use crate::bitstreams::BitstreamBoard;
 use crate::failure::Failure;
 use crate::progress::ChildOutput;
 use halfrow::report::shell_word;
@@ -37,17 +38,19 @@ pub(super) struct Call {
     /// Its options.
     options: Vec<String>,
     file: PathBuf,
-    /// What to call by hand if the program is not installed.
+    /// What to call by hand if the program is not installed, or fails.
     other: String,
+    /// The FPGA that the file is for, if that is known.
+    device: Option<String>,
 }
 
 impl Call {
-    /// A call that loads `file` into the board that the loader calls `board`, with the further options `more`.
-    pub(super) fn new(board: &str, other: &str, file: &Path, more: &[String]) -> Self {
-        let mut options = vec!["-b".to_owned(), board.to_owned()];
+    /// A call that loads `file`, which was built for the FPGA `device`, into `board`, with the further options `more`.
+    pub(super) fn new(board: &BitstreamBoard, device: Option<&str>, file: &Path, more: &[String]) -> Self {
+        let mut options = vec!["-b".to_owned(), board.loader_name.to_owned()];
         options.extend(more.iter().cloned());
-        let other = format!("{other} {}", shell_word(&file.display().to_string()));
-        Self { options, file: file.to_owned(), other }
+        let other = format!("{} {}", board.other_loader, shell_word(&file.display().to_string()));
+        Self { options, file: file.to_owned(), other, device: device.map(str::to_owned) }
     }
 
     /// Program, options and file.
@@ -83,7 +86,10 @@ impl Call {
                 Err(Failure::error(LoadError::LoaderLate { call, deadline, said }))
             }
             (End::Itself, Ok(status)) if status.success() => Ok(()),
-            (End::Itself, Ok(status)) => Err(Failure::error(LoadError::LoaderFailed { call, status, said })),
+            (End::Itself, Ok(status)) => {
+                let (device, other) = (self.device.clone(), self.other.clone());
+                Err(Failure::error(LoadError::LoaderFailed { call, status, said, device, other }))
+            }
             (End::Itself, Err(source)) => Err(Failure::error(LoadError::LoaderNotStarted { call, source })),
         }
     }
@@ -232,12 +238,9 @@ mod tests {
 
     #[test]
     fn a_call_can_be_repeated_in_a_shell() {
-        let call = Call::new(
-            "ulx3s",
-            "fujprog",
-            Path::new("it's a/top.bit"),
-            &["--freq".to_owned(), "1e6".to_owned()],
-        );
+        let ulx3s = BitstreamBoard::named("ulx3s").unwrap();
+        let call =
+            Call::new(ulx3s, None, Path::new("it's a/top.bit"), &["--freq".to_owned(), "1e6".to_owned()]);
         assert_eq!(call.line(), r"openFPGALoader -b ulx3s --freq 1e6 'it'\''s a/top.bit'");
         assert_eq!(call.other, r"fujprog 'it'\''s a/top.bit'");
     }

@@ -72,7 +72,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         console::diagnose(&format_args!("warning: {warning}"));
     }
     let stopped = signals::heed();
-    let call = Call::new(onto.loader_name, onto.other_loader, &arguments.file, &arguments.options);
+    let device = record.as_ref().map(|record| record.device.as_str());
+    let call = Call::new(onto, device, &arguments.file, &arguments.options);
     call.run(arguments.deadline, &context.child_output(), &stopped)?;
     let report = board.map(|target| greeted(&target, arguments.deadline, stopped)).transpose()?;
     let compared = match (&report, &record) {
