@@ -245,6 +245,7 @@ fn a_loader_that_hangs_is_killed_at_the_deadline_with_all_that_it_started() {
         let error = refused(&folder, &["top.bit", "--deadline", deadline], 3, "loader-late");
         let begun = folder.path().join("child").exists();
         assert!(!begun || error["parameters"]["said"] == "started", "{error}");
+        assert!(error["remedy"].as_str().unwrap().contains("plug it in"), "{error}");
         begun
     });
     assert!(begun);
@@ -306,7 +307,8 @@ fn a_signal_ends_the_loader_too() {
     running.send("INT");
     let ended = running.end();
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-    assert!(ended.stderr.contains("may hold half of the bitstream; load it again\n"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("may hold half of the bitstream; load it again, and "), "{}", ended.stderr);
+    assert!(ended.stderr.contains("plug it in before that\n"), "{}", ended.stderr);
     let child = folder.text("child");
     wait_until("the loader's child to end", || !is_running(child.trim()));
 }

@@ -96,10 +96,16 @@ fn two_programs_do_not_share_a_channel() {
 #[test]
 #[ignore = "needs scripts/in-linux"]
 fn a_run_that_was_killed_leaves_a_board_for_the_next_one() {
-    let (_board, said) = plug_and_watch("");
+    let (board, said) = plug_and_watch("");
+    let port = serial_port(&board, 1);
     let run = Running::start(&mut command(["verify", "--board", "usb", "--repeat", "99"]));
     said.wait_for_rows();
     drop(run);
+    // The kernel gives an interface back to its driver only if it is told to.
+    let ended = verify(&format!("serial:{}", port.display()));
+    assert_eq!(ended.json()["error"]["code"], "serial-port-missing", "{ended:?}");
+    assert!(ended.headline().contains("unplug the board and plug it in"), "{ended:?}");
     let ended = verify("usb");
     assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert!(serial_port(&board, 1).exists());
 }

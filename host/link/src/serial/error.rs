@@ -14,7 +14,7 @@ pub enum SerialError {
     /// There is no serial port of this name.
     #[error(
         "there is no serial port {}; {}check that the board is plugged in and powered, and see `halfrow boards` for \
-         those that are there",
+         those that are there, or unplug the board and plug it in if a program that used its USB chip was killed",
         .0.display(),
         below_dev(.0)
     )]

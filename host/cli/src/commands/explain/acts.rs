@@ -181,7 +181,8 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ("serial-port-in-use", HELD),
     (
         "serial-port-missing",
-        "check that the board is plugged in and powered, and see `halfrow boards` for the ports that are there",
+        "check that the board is plugged in and powered, and see `halfrow boards` for the ports that are there, or unplug the \
+         board and plug it in if a program that used its USB chip was killed",
     ),
     ("serial-port-not-given", "let halfrow's container or service have the port, as docs/install.md says"),
     ("serial-port-not-permitted", NOT_PERMITTED),

@@ -58,12 +58,16 @@ pub(in crate::commands) enum LoadError {
     LoaderFailed { call: String, status: ExitStatus, said: String, device: Option<String>, other: String },
     /// The program that loads the bitstream took too long and was stopped.
     #[error(
-        "`{call}` was killed after {deadline} s: {said}; check the cable and that nothing else uses the board's JTAG, or \
-         give it longer with --deadline"
+        "`{call}` was killed after {deadline} s: {said}; unplug the board and plug it in, since a loader that is killed \
+         leaves it without its port, check the cable and that nothing else uses the board's JTAG, or give it longer with \
+         --deadline"
     )]
     LoaderLate { call: String, deadline: f64, said: String },
     /// Somebody stopped the program that loads the bitstream.
-    #[error("{by} while `{call}` ran, so the FPGA may hold half of the bitstream; load it again")]
+    #[error(
+        "{by} while `{call}` ran, so the FPGA may hold half of the bitstream; load it again, and if the board's port is gone, \
+         unplug the board and plug it in before that"
+    )]
     Stopped { call: String, by: StoppedBy },
     /// Somebody stopped the wait for the loaded board.
     #[error(
