@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use halfrow::files::text;
+use toml::Spanned;
 
 /// A file of TOML that cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +69,24 @@ pub(crate) fn text_of(path: &Path) -> Result<String, InputError> {
     })
 }
 
+/// A place in the file's text.
+pub(crate) trait At {
+    /// The byte at which it begins.
+    fn at(self) -> usize;
+}
+
+impl At for usize {
+    fn at(self) -> usize {
+        self
+    }
+}
+
+impl<T> At for &Spanned<T> {
+    fn at(self) -> usize {
+        self.span().start
+    }
+}
+
 /// What is wrong at a place in the file's text, before the place is turned into a line number.
 #[derive(Debug)]
 pub(crate) struct Fault {
@@ -83,18 +102,18 @@ enum Why {
 }
 
 impl Fault {
-    /// What stands at byte `at` is wrong.
-    pub(crate) fn wrong(at: usize, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { at, what: what.into(), why: Why::Remedy(remedy.into()) }
+    /// What stands there is wrong.
+    pub(crate) fn wrong(at: impl At, what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { at: at.at(), what: what.into(), why: Why::Remedy(remedy.into()) }
     }
 
-    /// Byte `at` names something that cannot be used.
+    /// What stands there names something that cannot be used.
     pub(crate) fn input(
-        at: usize,
+        at: impl At,
         what: impl Into<String>,
         source: impl Into<Box<dyn Error + Send + Sync>>,
     ) -> Self {
-        Self { at, what: what.into(), why: Why::Source(source.into()) }
+        Self { at: at.at(), what: what.into(), why: Why::Source(source.into()) }
     }
 
     /// A syntax error of TOML, or a value of the wrong type; `keys` says where all keys are listed.

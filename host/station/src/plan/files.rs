@@ -28,12 +28,11 @@ impl Files {
     /// Finds the file `name`.
     pub(super) fn find(&self, name: &Spanned<String>) -> Result<PathBuf, Fault> {
         let path = self.folder.join(name.get_ref());
-        let at = name.span().start;
         check_regular(&path)
-            .map_err(|error| Fault::input(at, format!("the file {}", path.display()), error))?;
+            .map_err(|error| Fault::input(name, format!("the file {}", path.display()), error))?;
         fs::metadata(&path).map_err(|error| {
             let what = format!("the file {} cannot be read: {error}", path.display());
-            Fault::wrong(at, what, "check its name, and who may read it")
+            Fault::wrong(name, what, "check its name, and who may read it")
         })?;
         Ok(path)
     }
@@ -46,7 +45,7 @@ impl Files {
             Some(_) => {
                 let what = format!("the file {} changed while the plan was read", read.path.display());
                 let remedy = "read the plan again when nobody writes to its files";
-                return Err(Fault::wrong(name.span().start, what, remedy));
+                return Err(Fault::wrong(name, what, remedy));
             }
             None => self.named.push(FileHash { path, sha256 }),
         }

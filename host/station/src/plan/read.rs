@@ -15,7 +15,7 @@ use super::text::{
     TablesText,
 };
 use super::{Bad, Judging, Plan, Production, SCHEMA, Seed, Selected, Shift, Step, StepKind};
-use crate::input_error::Fault;
+use crate::input_error::{At, Fault};
 
 /// Where all keys are listed.
 const KEYS: &str = "`halfrow-station plan schema` lists every key and its values";
@@ -76,17 +76,13 @@ fn production(read: &PlanText, rule: &SerialRule) -> Result<Production, Fault> {
 fn serial(read: &PlanText) -> Result<SerialRule, Fault> {
     let SerialText { pattern, check } = &read.serial;
     let rule = SerialRule::new(pattern.get_ref(), *check);
-    rule.map_err(|(what, remedy)| Fault::wrong(pattern.span().start, what, remedy))
+    rule.map_err(|(what, remedy)| Fault::wrong(pattern, what, remedy))
 }
 
 fn check_schema(read: &PlanText) -> Result<(), Fault> {
     if *read.schema.get_ref() != SCHEMA {
         let what = format!("this program reads plans of schema {SCHEMA}, not {}", read.schema.get_ref());
-        return Err(Fault::wrong(
-            read.schema.span().start,
-            what,
-            "take the halfrow-station that it was written for",
-        ));
+        return Err(Fault::wrong(&read.schema, what, "take the halfrow-station that it was written for"));
     }
     Ok(())
 }
@@ -100,16 +96,16 @@ fn shift(text: &ShiftText, rule: &SerialRule) -> Result<Shift, Fault> {
     let units = [Some(&text.good), (bad != Bad::Mock).then_some(&text.bad)];
     for unit in units.into_iter().flatten() {
         rule.read(unit.get_ref())
-            .map_err(|error| Fault::input(unit.span().start, "the unit that checks a shift", error))?;
+            .map_err(|error| Fault::input(unit, "the unit that checks a shift", error))?;
     }
     if text.good.get_ref() == text.bad.get_ref() {
         let what = "one unit is both good and bad";
-        return Err(Fault::wrong(text.bad.span().start, what, "name two units"));
+        return Err(Fault::wrong(&text.bad, what, "name two units"));
     }
     let hours = *text.hours.get_ref();
     if !(0.1..=MOST_SHIFT_HOURS).contains(&hours) {
         let remedy = format!("write 0.1 to {MOST_SHIFT_HOURS} hours");
-        return Err(Fault::wrong(text.hours.span().start, format!("no shift has {hours} hours"), remedy));
+        return Err(Fault::wrong(&text.hours, format!("no shift has {hours} hours"), remedy));
     }
     Ok(Shift { good: text.good.get_ref().clone(), bad, lasts: Duration::from_secs_f64(3600.0 * hours) })
 }
@@ -124,11 +120,8 @@ fn variants(
     for (name, variant) in &read.variant {
         if !serial.has_variants() {
             let what = format!("no serial number says that it is of the variant {}", name.get_ref());
-            return Err(Fault::wrong(
-                name.span().start,
-                what,
-                "give the pattern a group (?<variant>…), or leave the variant out",
-            ));
+            let remedy = "give the pattern a group (?<variant>…), or leave the variant out";
+            return Err(Fault::wrong(name, what, remedy));
         }
         let tables = read.tables.under(&variant.tables);
         variants.push((name.get_ref().clone(), selected(read, &tables, &variant.limits, files)?));
@@ -138,11 +131,7 @@ fn variants(
 
 fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
     match word.get_ref().trim() {
-        "" => Err(Fault::wrong(
-            word.span().start,
-            "there is no name here",
-            "write one, which reports will have",
-        )),
+        "" => Err(Fault::wrong(word, "there is no name here", "write one, which reports will have")),
         word => Ok(word.to_owned()),
     }
 }
@@ -151,11 +140,8 @@ fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
 fn builds(board: &BoardText) -> Result<Vec<String>, Fault> {
     if board.builds.get_ref().is_empty() {
         let what = "no build of the board may be judged";
-        return Err(Fault::wrong(
-            board.builds.span().start,
-            what,
-            "name the builds that are released, as `halfrow info` prints them",
-        ));
+        let remedy = "name the builds that are released, as `halfrow info` prints them";
+        return Err(Fault::wrong(&board.builds, what, remedy));
     }
     let build = |build: &Spanned<String>| {
         let text = build.get_ref();
@@ -163,7 +149,7 @@ fn builds(board: &BoardText) -> Result<Vec<String>, Fault> {
         is_build.then(|| text.clone()).ok_or_else(|| {
             let what = format!("`{text}` is no build");
             let remedy = "write the eight hexadecimal digits, in lower case, that `halfrow info` prints";
-            Fault::wrong(build.span().start, what, remedy)
+            Fault::wrong(build, what, remedy)
         })
     };
     board.builds.get_ref().iter().map(build).collect()
@@ -177,12 +163,12 @@ fn selected(
     files: &mut Files,
 ) -> Result<Selected, Fault> {
     let Some(first) = plan.step.first() else {
-        let at = plan.schema.span().start;
-        return Err(Fault::wrong(at, "the plan has no step", "write a [[step]] with kind = \"verify\""));
+        let remedy = "write a [[step]] with kind = \"verify\"";
+        return Err(Fault::wrong(&plan.schema, "the plan has no step", remedy));
     };
     if !plan.step.iter().any(|step| *step.kind.get_ref() == StepKindText::Verify) {
         let what = "no step judges the board";
-        return Err(Fault::wrong(first.kind.span().start, what, "add a [[step]] with kind = \"verify\""));
+        return Err(Fault::wrong(&first.kind, what, "add a [[step]] with kind = \"verify\""));
     }
     let identity =
         Step { name: "identity".to_owned(), kind: StepKind::Identity, retries: 0, timeout: TIMEOUT };
@@ -190,7 +176,7 @@ fn selected(
     for text in &plan.step {
         let step = step(text, tables, files)?;
         if steps.iter().any(|other| other.name == step.name) {
-            let at = text.name.as_ref().map_or(text.kind.span().start, |name| name.span().start);
+            let at = text.name.as_ref().map_or(text.kind.at(), At::at);
             let what = format!("two steps are called {}", step.name);
             return Err(Fault::wrong(at, what, "give each a `name` of its own"));
         }
@@ -214,11 +200,11 @@ fn step(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<Step,
 
 fn link(text: &StepText) -> Result<StepKind, Fault> {
     let foreign = [
-        text.frames.as_ref().map(|key| ("frames", key.span().start)),
-        text.repeat.as_ref().map(|key| ("repeat", key.span().start)),
-        text.at_speed.as_ref().map(|key| ("at_speed", key.span().start)),
-        text.seed.as_ref().map(|key| ("seed", key.span().start)),
-        text.tables.as_ref().map(|_| ("tables", text.kind.span().start)),
+        text.frames.as_ref().map(|key| ("frames", key.at())),
+        text.repeat.as_ref().map(|key| ("repeat", key.at())),
+        text.at_speed.as_ref().map(|key| ("at_speed", key.at())),
+        text.seed.as_ref().map(|key| ("seed", key.at())),
+        text.tables.as_ref().map(|_| ("tables", text.kind.at())),
     ];
     if let Some((key, at)) = foreign.into_iter().flatten().next() {
         let what = format!("a step `link` has no `{key}`");
@@ -229,26 +215,25 @@ fn link(text: &StepText) -> Result<StepKind, Fault> {
 }
 
 fn verify(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<StepKind, Fault> {
-    let at = text.kind.span().start;
     if let Some(seconds) = &text.seconds {
         let what = "a step `verify` takes as long as its frames do";
-        return Err(Fault::wrong(seconds.span().start, what, "leave `seconds` out; `timeout` limits it"));
+        return Err(Fault::wrong(seconds, what, "leave `seconds` out; `timeout` limits it"));
     }
     let tables = text.tables.as_ref().map_or_else(|| tables.clone(), |own| tables.under(own));
-    let chosen = tables.choose(files, at)?;
+    let chosen = tables.choose(files, text.kind.at())?;
     let phase = tables.phase.unwrap_or_default();
     let named = text.frames.as_ref().filter(|names| !names.get_ref().is_empty());
     let Some(names) = named else {
         let remedy =
             "name files, or built-in frames as `halfrow frames` lists them, such as \"builtin:noise\"";
-        return Err(Fault::wrong(at, "the step has no frames", remedy));
+        return Err(Fault::wrong(&text.kind, "the step has no frames", remedy));
     };
     let frames = tables::frames(names.get_ref(), chosen.tables.geometry(), phase, files)?;
     let repeat = whole(text.repeat.as_ref(), 1, 1..=MOST_REPEATS)?;
     let at_speed = text.at_speed.as_ref().map(at_speed).transpose()?;
     let judging = Judging { chosen, phase, frames, repeat, at_speed, seed: seed(text.seed.as_ref())? };
     let fits = judging.plan(0).check_length();
-    fits.map_err(|error| Fault::input(names.span().start, "so many frames", error))?;
+    fits.map_err(|error| Fault::input(names, "so many frames", error))?;
     Ok(StepKind::Verify(Box::new(judging)))
 }
 
@@ -269,12 +254,12 @@ impl Judging {
 const SEED: &str = "write \"run\", or a whole number from 0 on";
 
 fn seed(text: Option<&Spanned<SeedText>>) -> Result<Seed, Fault> {
-    match text.map(|text| (text.get_ref(), text.span().start)) {
-        None => Ok(Seed::Run),
-        Some((SeedText::Number(seed), _)) => Ok(Seed::Fixed(*seed)),
-        Some((SeedText::Word(word), _)) if word == "run" => Ok(Seed::Run),
-        Some((SeedText::Word(word), at)) => Err(Fault::wrong(at, format!("`{word}` is no seed"), SEED)),
-        Some((SeedText::Other(_), at)) => Err(Fault::wrong(at, "this is no seed", SEED)),
+    let Some(text) = text else { return Ok(Seed::Run) };
+    match text.get_ref() {
+        SeedText::Number(seed) => Ok(Seed::Fixed(*seed)),
+        SeedText::Word(word) if word == "run" => Ok(Seed::Run),
+        SeedText::Word(word) => Err(Fault::wrong(text, format!("`{word}` is no seed"), SEED)),
+        SeedText::Other(_) => Err(Fault::wrong(text, "this is no seed", SEED)),
     }
 }
 
@@ -294,11 +279,7 @@ fn some_seconds(text: &Spanned<f64>, most: f64, or: &str) -> Result<Duration, Fa
     let seconds = *text.get_ref();
     if !(0.001..=most).contains(&seconds) {
         let remedy = format!("write a number of seconds, {or}0.001 to {most}");
-        return Err(Fault::wrong(
-            text.span().start,
-            format!("{seconds} seconds are none that a step can take"),
-            remedy,
-        ));
+        return Err(Fault::wrong(text, format!("{seconds} seconds are none that a step can take"), remedy));
     }
     Ok(Duration::from_secs_f64(seconds))
 }
@@ -311,22 +292,21 @@ fn whole(
     let Some(text) = text else { return Ok(otherwise) };
     if !range.contains(text.get_ref()) {
         let remedy = format!("write a whole number from {} to {}", range.start(), range.end());
-        return Err(Fault::wrong(text.span().start, format!("{} is out of range", text.get_ref()), remedy));
+        return Err(Fault::wrong(text, format!("{} is out of range", text.get_ref()), remedy));
     }
     Ok(*text.get_ref())
 }
 
 fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Limit, Fault> {
-    let at = name.span().start;
     let Some(measurement) = Measurement::named(name.get_ref()) else {
         let names = MEASUREMENTS.iter().map(|known| known.name);
         let known: Vec<_> = names.filter(|name| *name != SAMPLES_DIFFERING).collect();
         let what = format!("nothing is measured that is called {}", name.get_ref());
-        return Err(Fault::wrong(at, what, format!("name one of {}", known.join(", "))));
+        return Err(Fault::wrong(name, what, format!("name one of {}", known.join(", "))));
     };
     if measurement.name == SAMPLES_DIFFERING {
         let what = "no sample may differ, whatever a plan says";
-        return Err(Fault::wrong(at, what, "leave this limit out; a sample that differs is FAIL"));
+        return Err(Fault::wrong(name, what, "leave this limit out; a sample that differs is FAIL"));
     }
     let is_made = match measurement.made_by {
         Maker::Run => true,
@@ -335,21 +315,21 @@ fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Lim
     };
     if !is_made {
         let what = format!("no step of the plan measures {}", measurement.name);
-        return Err(Fault::wrong(at, what, "add a [[step]] with kind = \"link\", or leave the limit out"));
+        return Err(Fault::wrong(name, what, "add a [[step]] with kind = \"link\", or leave the limit out"));
     }
     if let Some(unit) = text.unit.as_ref().filter(|unit| unit.get_ref() != measurement.unit) {
         let what =
             format!("{} is measured in {}, not in {}", measurement.name, measurement.unit, unit.get_ref());
         let remedy = format!("write the limit in {}", measurement.unit);
-        return Err(Fault::wrong(unit.span().start, what, remedy));
+        return Err(Fault::wrong(unit, what, remedy));
     }
-    let (least, most) = bounds(at, text)?;
+    let (least, most) = bounds(name, text)?;
     check_most(measurement, text.most.as_ref())?;
     let blames = text.blames.unwrap_or(measurement.blames);
     if blames == Blame::Board && measurement.blames != Blame::Board {
         let what =
             format!("a cable or a computer changes {}, so it cannot blame the board", measurement.name);
-        return Err(Fault::wrong(at, what, "write blames = \"station\" or blames = \"nobody\""));
+        return Err(Fault::wrong(name, what, "write blames = \"station\" or blames = \"nobody\""));
     }
     Ok(Limit { measurement, least, most, blames })
 }
@@ -358,7 +338,7 @@ fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Lim
 fn check_most(measurement: Measurement, most: Option<&Spanned<f64>>) -> Result<(), Fault> {
     let Measurement { name, .. } = measurement;
     let Some(most) = most else { return Ok(()) };
-    let (at, value) = (most.span().start, *most.get_ref());
+    let value = *most.get_ref();
     let (is_possible, remedy) = if measurement.is_latency() {
         (value > 0.0, "write a number above 0")
     } else {
@@ -367,28 +347,28 @@ fn check_most(measurement: Measurement, most: Option<&Spanned<f64>>) -> Result<(
     if is_possible {
         Ok(())
     } else {
-        Err(Fault::wrong(at, format!("{name} is never at most {value}"), remedy))
+        Err(Fault::wrong(most, format!("{name} is never at most {value}"), remedy))
     }
 }
 
 /// The least and the most value, at least one of which is given.
-fn bounds(at: usize, text: &LimitText) -> Result<(Option<f64>, Option<f64>), Fault> {
+fn bounds(name: &Spanned<String>, text: &LimitText) -> Result<(Option<f64>, Option<f64>), Fault> {
     let number = |bound: &Option<Spanned<f64>>| match bound {
         Some(bound) if !bound.get_ref().is_finite() => {
             let what = format!("{} is no limit", bound.get_ref());
-            Err(Fault::wrong(bound.span().start, what, "write a number, or leave this side open"))
+            Err(Fault::wrong(bound, what, "write a number, or leave this side open"))
         }
         bound => Ok(bound.as_ref().map(|bound| *bound.get_ref())),
     };
     match (number(&text.least)?, number(&text.most)?) {
         (None, None) => Err(Fault::wrong(
-            at,
+            name,
             "a limit without `least` and `most` limits nothing",
             "write one of them, or both",
         )),
         (Some(least), Some(most)) if least > most => {
             let what = format!("nothing is at least {least} and at most {most}");
-            Err(Fault::wrong(at, what, "exchange `least` and `most`, or correct one"))
+            Err(Fault::wrong(name, what, "exchange `least` and `most`, or correct one"))
         }
         bounds => Ok(bounds),
     }

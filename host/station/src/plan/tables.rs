@@ -14,7 +14,7 @@ use toml::Spanned;
 
 use super::files::Files;
 use super::text::{RowsText, TablesText};
-use crate::input_error::Fault;
+use crate::input_error::{At, Fault};
 
 /// What was chosen, and what its table file was read from, if it has one.
 type FromFile = (Chosen, Option<Input>);
@@ -41,9 +41,9 @@ impl TablesText {
     /// Where in the plan these tables are, for errors; none if they are the built-in ones. What a step or a variant says instead
     /// comes first, as the plan's own may be right.
     fn place(&self) -> Option<usize> {
-        let named = self.file.as_ref().or(self.lens.as_ref()).map(|name| name.span().start);
-        let radius = || self.radius.as_ref().map(|radius| radius.span().start);
-        let size = || self.width.as_ref().or(self.height.as_ref()).map(|size| size.span().start);
+        let named = self.file.as_ref().or(self.lens.as_ref()).map(At::at);
+        let radius = || self.radius.as_ref().map(At::at);
+        let size = || self.width.as_ref().or(self.height.as_ref()).map(At::at);
         self.instead.or(named).or_else(radius).or_else(size)
     }
 
@@ -77,9 +77,9 @@ impl TablesText {
     fn check(&self) -> Result<(), Fault> {
         self.depth()?;
         let named = [
-            self.file.as_ref().map(|name| ("file", name.span().start)),
-            self.lens.as_ref().map(|name| ("lens", name.span().start)),
-            self.radius.as_ref().map(|radius| ("radius", radius.span().start)),
+            self.file.as_ref().map(|name| ("file", name.at())),
+            self.lens.as_ref().map(|name| ("lens", name.at())),
+            self.radius.as_ref().map(|radius| ("radius", radius.at())),
         ];
         let mut named = named.into_iter().flatten();
         if let (Some((first, _)), Some((second, at))) = (named.next(), named.next()) {
@@ -89,7 +89,7 @@ impl TablesText {
         let sized = [&self.width, &self.height].into_iter().flatten().next();
         if let (Some(_), Some(size)) = (&self.file, sized) {
             let what = "a file of tables has a size of its own";
-            return Err(Fault::wrong(size.span().start, what, "leave `width` and `height` out"));
+            return Err(Fault::wrong(size, what, "leave `width` and `height` out"));
         }
         Ok(())
     }
@@ -98,7 +98,7 @@ impl TablesText {
         let Some(bits) = &self.bits else { return Ok(BitDepth::default()) };
         BitDepth::from_bits(*bits.get_ref()).ok_or_else(|| {
             let what = format!("a sample has no {} bits", bits.get_ref());
-            Fault::wrong(bits.span().start, what, "write 8, 10 or 12")
+            Fault::wrong(bits, what, "write 8, 10 or 12")
         })
     }
 
@@ -156,7 +156,7 @@ pub(super) fn frames(
     let source = |name: &Spanned<String>| match Builtin::named(name.get_ref()) {
         Ok(Some(builtin)) => Ok(FrameSource::Builtin(builtin)),
         Ok(None) => of_file(name, &how, geometry, files),
-        Err(error) => Err(Fault::input(name.span().start, format!("`{}`", name.get_ref()), error)),
+        Err(error) => Err(Fault::input(name, format!("`{}`", name.get_ref()), error)),
     };
     names.iter().map(source).collect()
 }
@@ -167,13 +167,12 @@ fn of_file(
     geometry: &Geometry,
     files: &mut Files,
 ) -> Result<FrameSource, Fault> {
-    let at = name.span().start;
     let path = files.find(name)?;
     let read = FrameFile::read(&path).and_then(|file| Ok((file.decode(how)?.frame, file)));
     let what = || format!("the frame {}", path.display());
-    let (frame, file) = read.map_err(|error| Fault::input(at, what(), error))?;
+    let (frame, file) = read.map_err(|error| Fault::input(name, what(), error))?;
     files.note(name, Input::of_bytes(&path, file.bytes()))?;
     check_size(&path, (frame.width(), frame.height()), how, geometry)
-        .map_err(|error| Fault::input(at, what(), error))?;
+        .map_err(|error| Fault::input(name, what(), error))?;
     Ok(FrameSource::File { path, frame: Arc::new(frame) })
 }

@@ -34,7 +34,7 @@ impl Lender {
 
     /// The board of the lane.
     pub(super) fn board(&self, text: &LaneText) -> Result<LaneBoard, Fault> {
-        let at = text.board.span().start;
+        let at = &text.board;
         let board: Target =
             text.board.get_ref().parse().map_err(|error| Fault::input(at, "the board", error))?;
         if board.kind == KIND {
@@ -62,7 +62,7 @@ impl Lender {
             _ => {
                 let what = format!("`{written}` names no place of labgrid's");
                 let remedy = format!("write {KIND}:PLACE, with a name as `labgrid-client places` lists them");
-                Err(Fault::wrong(text.board.span().start, what, remedy))
+                Err(Fault::wrong(&text.board, what, remedy))
             }
         }
     }

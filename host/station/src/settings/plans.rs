@@ -33,12 +33,11 @@ impl<'a> Plans<'a> {
         if let Some(known) = self.named.iter().position(|known| known.path == path) {
             return Ok(known);
         }
-        let plan = Plan::load(&path).map_err(|error| {
-            Fault::input(text.span().start, format!("the plan {}", text.get_ref()), error)
-        })?;
+        let plan = Plan::load(&path)
+            .map_err(|error| Fault::input(text, format!("the plan {}", text.get_ref()), error))?;
         if expected.is_some_and(|expected| expected != plan.sha256) {
             let what = format!("the plan {} is not as it was published", text.get_ref());
-            return Err(Fault::wrong(text.span().start, what, FETCH));
+            return Err(Fault::wrong(text, what, FETCH));
         }
         self.named.push(PlanFile { path, plan });
         Ok(self.named.len() - 1)
@@ -57,20 +56,20 @@ impl<'a> Plans<'a> {
 
     /// Where a plan is, and which hash it must have if it is published.
     fn path(&self, text: &Spanned<String>) -> Result<(PathBuf, Option<String>), Fault> {
-        let (at, place) = (text.span().start, text.get_ref());
+        let place = text.get_ref();
         if !place.starts_with(PLACE) {
             let path = self.folder.join(place);
             return Ok((std::path::absolute(&path).unwrap_or(path), None));
         }
         let Some(plan) = named_by(place) else {
             let what = format!("`{place}` is no plan of a plant");
-            return Err(Fault::wrong(at, what, format!("write {PLACE}PRODUCT/NAME")));
+            return Err(Fault::wrong(text, what, format!("write {PLACE}PRODUCT/NAME")));
         };
         let Some(statement) = self.kept.statement(&plan, &self.trusted) else {
             let what = format!(
                 "the plan {plan} was not fetched yet, or by a key that [plant] does not trust any more"
             );
-            return Err(Fault::wrong(at, what, FETCH));
+            return Err(Fault::wrong(text, what, FETCH));
         };
         Ok((self.kept.file(&statement), Some(statement.sha256)))
     }

@@ -61,9 +61,9 @@ impl PlantSettings {
         PlantAddress::new(&settings.url, None, settings.ca.as_deref()).map_err(|error| {
             match (&error, &text.ca) {
                 (PlantAddressError::Trust(_), Some(ca)) => {
-                    Fault::input(ca.span().start, "the file of the plant's certificates", error)
+                    Fault::input(ca, "the file of the plant's certificates", error)
                 }
-                _ => Fault::input(text.url.span().start, "the plant", error),
+                _ => Fault::input(&text.url, "the plant", error),
             }
         })?;
         Ok(settings)
@@ -83,17 +83,13 @@ impl PlantSettings {
 }
 
 fn trusted(text: &Spanned<String>) -> Result<PublicKey, Fault> {
-    PublicKey::parse(text.get_ref()).map_err(|error| Fault::input(text.span().start, "a key", error))
+    PublicKey::parse(text.get_ref()).map_err(|error| Fault::input(text, "a key", error))
 }
 
 fn most_unsent(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
     let Some(text) = text else { return Ok(MOST_UNSENT) };
     match *text.get_ref() {
-        0 => Err(Fault::wrong(
-            text.span().start,
-            "with none unsent no lane could judge".to_owned(),
-            "give 1 or more".to_owned(),
-        )),
+        0 => Err(Fault::wrong(text, "with none unsent no lane could judge", "give 1 or more")),
         most => Ok(most),
     }
 }
@@ -102,10 +98,6 @@ fn most_filled(text: Option<&Spanned<u8>>) -> Result<u8, Fault> {
     let Some(text) = text else { return Ok(MOST_FILLED) };
     match *text.get_ref() {
         most @ 1..=100 => Ok(most),
-        most => Err(Fault::wrong(
-            text.span().start,
-            format!("a disk cannot be full to {most} %"),
-            "give 1 to 100".to_owned(),
-        )),
+        most => Err(Fault::wrong(text, format!("a disk cannot be full to {most} %"), "give 1 to 100")),
     }
 }

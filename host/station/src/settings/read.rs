@@ -14,7 +14,7 @@ use super::{
     WorkSettings,
 };
 use crate::floor::Starts;
-use crate::input_error::Fault;
+use crate::input_error::{At, Fault};
 use crate::labgrid::LaneBoard;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
 use crate::published::named_by;
@@ -47,7 +47,7 @@ pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Setti
     let station = &read.station;
     if has_lanes && read.lane.is_empty() {
         let remedy = "write a [[lane]] with name, board and plans";
-        return Err(Fault::wrong(read.schema.span().start, "the station has no lane", remedy));
+        return Err(Fault::wrong(&read.schema, "the station has no lane", remedy));
     }
     let data = folder.join(not_empty(&station.data)?);
     let plant = read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?;
@@ -75,17 +75,13 @@ pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Setti
 /// Which jobs are taken.
 fn work(text: &WorkText, plans: &mut Plans<'_>) -> Result<WorkSettings, Fault> {
     if text.plans.get_ref().is_empty() {
-        return Err(Fault::wrong(
-            text.plans.span().start,
-            "no job can be taken without a plan",
-            "name the file of one",
-        ));
+        return Err(Fault::wrong(&text.plans, "no job can be taken without a plan", "name the file of one"));
     }
     let files = text.plans.get_ref().iter().map(|file| plans.take(file));
     let files = files.collect::<Result<_, _>>()?;
     if let Some(word) = text.has.iter().find(|word| !is_word(word.get_ref())) {
         let what = format!("`{}` is no word that a job could name", word.get_ref());
-        return Err(Fault::wrong(word.span().start, what, "write one without blanks"));
+        return Err(Fault::wrong(word, what, "write one without blanks"));
     }
     let has = text.has.iter().map(|word| word.get_ref().clone()).collect();
     Ok(WorkSettings { plans: files, has, at_once: at_once(text.at_once.as_ref())? })
@@ -97,7 +93,7 @@ fn at_once(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
     match text {
         Some(text) if !(1..=MOST_AT_ONCE).contains(&wanted) => {
             let what = format!("{wanted} jobs cannot be judged at once");
-            Err(Fault::wrong(text.span().start, what, format!("give 1 to {MOST_AT_ONCE}")))
+            Err(Fault::wrong(text, what, format!("give 1 to {MOST_AT_ONCE}")))
         }
         _ => Ok(wanted),
     }
@@ -108,7 +104,7 @@ fn read(text: &str) -> Result<SettingsText, Fault> {
     if *read.schema.get_ref() != SCHEMA {
         let what = format!("this program reads settings of schema {SCHEMA}, not {}", read.schema.get_ref());
         let remedy = "take the halfrow-station that they were written for";
-        return Err(Fault::wrong(read.schema.span().start, what, remedy));
+        return Err(Fault::wrong(&read.schema, what, remedy));
     }
     Ok(read)
 }
@@ -138,7 +134,7 @@ fn sinks(folder: &Path, read: &SettingsText) -> Result<Vec<SinkSettings>, Fault>
         let sink = SinkSettings::of(folder, text)?;
         if sinks.iter().any(|other| other.name == sink.name) {
             let what = format!("two sinks are called {}", sink.name);
-            return Err(Fault::wrong(text.name.span().start, what, "give each a name of its own"));
+            return Err(Fault::wrong(&text.name, what, "give each a name of its own"));
         }
         sinks.push(sink);
     }
@@ -148,9 +144,8 @@ fn sinks(folder: &Path, read: &SettingsText) -> Result<Vec<SinkSettings>, Fault>
 /// Where the pages are. If others can reach them, people must log in.
 fn address(read: &SettingsText) -> Result<Address, Fault> {
     let WebText { listen, public, hosts } = &read.web;
-    let [of_listen, of_public] =
-        [listen, public].map(|text| text.as_ref().map_or(0, |text| text.span().start));
-    let of_hosts = hosts.as_ref().map_or(0, |hosts| hosts.span().start);
+    let [of_listen, of_public] = [listen, public].map(|text| text.as_ref().map_or(0, At::at));
+    let of_hosts = hosts.as_ref().map_or(0, At::at);
     let listen = listen.as_ref().map_or(LISTEN, |text| text.get_ref());
     let public = public.as_ref().map(|text| text.get_ref().as_str());
     let names = hosts.as_ref().map_or(&[][..], |hosts| hosts.get_ref());
@@ -185,7 +180,7 @@ fn address(read: &SettingsText) -> Result<Address, Fault> {
 fn people(folder: &Path, text: &AccessText) -> Result<AccessSettings, Fault> {
     let hours = text.hours.as_ref().map_or(HOURS, |hours| *hours.get_ref());
     if !(0.01..=MOST_HOURS).contains(&hours) {
-        let at = text.hours.as_ref().map_or(0, |hours| hours.span().start);
+        let at = text.hours.as_ref().map_or(0, At::at);
         return Err(Fault::wrong(
             at,
             format!("{hours} is no number of hours"),
@@ -199,7 +194,7 @@ fn people(folder: &Path, text: &AccessText) -> Result<AccessSettings, Fault> {
 
 pub(super) fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
     match word.get_ref().trim() {
-        "" => Err(Fault::wrong(word.span().start, "there is nothing here", "write a name")),
+        "" => Err(Fault::wrong(word, "there is nothing here", "write a name")),
         word => Ok(word.to_owned()),
     }
 }
@@ -211,7 +206,7 @@ pub(super) fn file(folder: &Path, written: &Spanned<String>) -> Result<PathBuf, 
 
 pub(super) fn seconds(text: Option<&Spanned<f64>>, default: f64) -> Result<Duration, Fault> {
     let value = text.map_or(default, |text| *text.get_ref());
-    let at = text.map_or(0, |text| text.span().start);
+    let at = text.map_or(0, At::at);
     if (0.1..=MOST_SECONDS).contains(&value) {
         return Ok(Duration::from_secs_f64(value));
     }
@@ -225,7 +220,7 @@ fn memory(text: Option<&Spanned<u64>>) -> Result<u64, Fault> {
     if MEMORIES_MIB.contains(text.get_ref()) {
         Ok(*text.get_ref())
     } else {
-        Err(Fault::wrong(text.span().start, what, remedy))
+        Err(Fault::wrong(text, what, remedy))
     }
 }
 
@@ -236,13 +231,13 @@ fn lanes(folder: &Path, read: &SettingsText, plans: &mut Plans<'_>) -> Result<Ve
         let lane = lane(text, &lender, plans)?;
         if lanes.iter().any(|other| other.name == lane.name) {
             let what = format!("two lanes are called {}", lane.name);
-            return Err(Fault::wrong(text.name.span().start, what, "give each a name of its own"));
+            return Err(Fault::wrong(&text.name, what, "give each a name of its own"));
         }
         if let Some(other) = lanes.iter().find(|other| other.board.is_same(&lane.board)) {
             let (written, known) = (text.board.get_ref(), other.board.to_string());
             let called = if *written == known { String::new() } else { format!(", as `{known}`") };
             let what = format!("lane {} has the board `{written}` already{called}", other.name);
-            return Err(Fault::wrong(text.board.span().start, what, "give each lane a board of its own"));
+            return Err(Fault::wrong(&text.board, what, "give each lane a board of its own"));
         }
         lanes.push(lane);
     }
@@ -264,12 +259,12 @@ fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneS
     if !is_lane_name(name) {
         let what = format!("`{name}` is no name for a lane");
         let remedy = format!("write {LANE_NAME}");
-        return Err(Fault::wrong(text.name.span().start, what, remedy));
+        return Err(Fault::wrong(&text.name, what, remedy));
     }
     let board = lender.board(text)?;
     if text.plans.get_ref().is_empty() {
         let what = format!("lane {name} has no plan");
-        return Err(Fault::wrong(text.plans.span().start, what, "name the file of one"));
+        return Err(Fault::wrong(&text.plans, what, "name the file of one"));
     }
     let mut of_lane = Vec::new();
     for file in text.plans.get_ref() {
@@ -280,7 +275,7 @@ fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneS
             let first =
                 if earlier == file.get_ref() { String::new() } else { format!(", first as {earlier}") };
             let what = format!("lane {name} has the plan {} twice{first}", file.get_ref());
-            return Err(Fault::wrong(file.span().start, what, "leave one of them out"));
+            return Err(Fault::wrong(file, what, "leave one of them out"));
         }
         of_lane.push(plan);
     }
@@ -293,12 +288,12 @@ fn starts(text: &LaneText, board: &LaneBoard) -> Result<Starts, Fault> {
     let has = |kind| start.get_ref().contains(&kind);
     if start.get_ref().is_empty() {
         let remedy = "name scan, button or presence, or leave `start` out for scan";
-        return Err(Fault::wrong(start.span().start, "nothing starts this lane", remedy));
+        return Err(Fault::wrong(start, "nothing starts this lane", remedy));
     }
     let [scan, button, presence] = [StartText::Scan, StartText::Button, StartText::Presence].map(has);
     if !scan && !button && !board.is_pluggable() {
         let what = format!("nobody sees the board `{board}` being plugged in, so nothing starts this lane");
-        return Err(Fault::wrong(start.span().start, what, "name scan or button"));
+        return Err(Fault::wrong(start, what, "name scan or button"));
     }
     Ok(Starts { scan, button, presence })
 }
@@ -319,18 +314,14 @@ fn hook(folder: &Path, on: Option<Verdict>, text: &HookText) -> Result<Hook, Fau
     let program = program(folder, &written);
     if written.contains('/') && !program.is_file() {
         let what = format!("there is no program {}", program.display());
-        return Err(Fault::wrong(
-            text.program.span().start,
-            what,
-            "check its name; it is relative to this file",
-        ));
+        return Err(Fault::wrong(&text.program, what, "check its name; it is relative to this file"));
     }
     let known = Hook::words(on);
     for argument in &text.arguments {
         if let Some(word) = unknown_word(argument.get_ref(), known) {
             let what = format!("nothing is known that is called {{{word}}}");
             let known = known.iter().map(|word| format!("{{{word}}}")).collect::<Vec<_>>().join(", ");
-            return Err(Fault::wrong(argument.span().start, what, format!("write one of {known}")));
+            return Err(Fault::wrong(argument, what, format!("write one of {known}")));
         }
     }
     let arguments = text.arguments.iter().map(|argument| argument.get_ref().clone()).collect();

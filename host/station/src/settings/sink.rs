@@ -10,7 +10,7 @@ use ureq::{Proxy, ProxyProtocol};
 use super::read::{file, is_name};
 use super::text::SinkText;
 use crate::export::Format;
-use crate::input_error::Fault;
+use crate::input_error::{At, Fault};
 use crate::store::SINK_OF_PLANT;
 use crate::trust;
 
@@ -114,7 +114,7 @@ impl SinkSettings {
             _ => {
                 let what = format!("the sink {name} has not one place to send to");
                 let remedy = "write one of folder, post and mqtt";
-                return Err(Fault::wrong(text.name.span().start, what, remedy));
+                return Err(Fault::wrong(&text.name, what, remedy));
             }
         };
         match text.unused(used) {
@@ -129,9 +129,9 @@ impl SinkSettings {
 impl SinkText {
     /// The first key that is given and is not one of `used`, with its place.
     fn unused(&self, used: &[&str]) -> Option<(&'static str, usize)> {
-        let at = |text: &Option<Spanned<String>>| text.as_ref().map(|text| text.span().start);
+        let at = |text: &Option<Spanned<String>>| text.as_ref().map(At::at);
         let given = [
-            ("format", self.format.as_ref().map(|format| format.span().start)),
+            ("format", self.format.as_ref().map(At::at)),
             ("token_file", at(&self.token_file)),
             ("user", at(&self.user)),
             ("password_file", at(&self.password_file)),
@@ -150,7 +150,7 @@ fn name(text: &Spanned<String>) -> Result<String, Fault> {
     let what = format!("`{name}` is no name for a sink");
     let remedy =
         format!("write 1 to {MOST_NAME} letters, digits and hyphens; {SINK_OF_PLANT} is the plant's");
-    Err(Fault::wrong(text.span().start, what, remedy))
+    Err(Fault::wrong(text, what, remedy))
 }
 
 fn login(folder: &Path, text: &SinkText) -> Result<Option<Login>, Fault> {
@@ -160,7 +160,7 @@ fn login(folder: &Path, text: &SinkText) -> Result<Option<Login>, Fault> {
             Ok(Some(Login { user: user.get_ref().clone(), password: file(folder, password)? }))
         }
         (one, other) => {
-            let at = one.as_ref().or(other.as_ref()).map_or(0, |text| text.span().start);
+            let at = one.as_ref().or(other.as_ref()).map_or(0, At::at);
             Err(Fault::wrong(at, "a user and a password belong together", "write user and password_file"))
         }
     }
@@ -172,13 +172,13 @@ fn topics(url: &Spanned<String>) -> Result<&Spanned<String>, Fault> {
         return Ok(url);
     }
     let what = "topics begin with the path of this address, and no topic may have `+`, `#` or `?` here";
-    Err(Fault::wrong(url.span().start, what, "leave them out"))
+    Err(Fault::wrong(url, what, "leave them out"))
 }
 
 /// The proxy to a server at `to`. What goes through a proxy leaves this computer, so it must be protected.
 fn proxy(text: Option<&Spanned<String>>, to: &SinkAddress) -> Result<Option<Proxy>, Fault> {
     let Some(text) = text else { return Ok(None) };
-    let wrong = |what, remedy| Fault::wrong(text.span().start, what, remedy);
+    let wrong = |what, remedy| Fault::wrong(text, what, remedy);
     if !to.is_protected {
         let what = "results would go openly through a proxy";
         return Err(wrong(what, "write https:// in post, or leave proxy out"));
@@ -207,8 +207,8 @@ fn address(
     [open, protected]: Schemes,
     ca: Option<PathBuf>,
 ) -> Result<SinkAddress, Fault> {
-    let (at, url) = (text.span().start, text.get_ref());
-    let wrong = |what: String, remedy: String| Fault::wrong(at, what, remedy);
+    let url = text.get_ref();
+    let wrong = |what: String, remedy: String| Fault::wrong(text, what, remedy);
     let example = format!("write it as {}://host/path", protected.0);
     let none = || wrong("this is no address".to_owned(), example.clone());
     let uri: Uri = url.parse().map_err(|_| none())?;

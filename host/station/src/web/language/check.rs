@@ -159,7 +159,7 @@ pub(crate) fn faults(path: &Path, text: &str) -> Result<Vec<InputError>, InputEr
     }
     for (table, _) in file.iter().filter(|(table, _)| !wanted.contains_key(table.get_ref())) {
         let what = format!("no page has the table `[{}]`", table.get_ref());
-        found.push(Fault::wrong(table.span().start, what, "leave it out"));
+        found.push(Fault::wrong(table, what, "leave it out"));
     }
     Ok(found.into_iter().map(|fault| fault.in_file(path, text)).collect())
 }
@@ -179,7 +179,7 @@ fn of_table(table: &str, keys: &Keys, file: &File, found: &mut Vec<Fault>) {
             } else {
                 format!("add its words, which may have {} in them", braced(names_of_key))
             };
-            found.push(Fault::wrong(head.span().start, what, remedy));
+            found.push(Fault::wrong(head, what, remedy));
             continue;
         };
         let used = names(text.get_ref());
@@ -188,12 +188,12 @@ fn of_table(table: &str, keys: &Keys, file: &File, found: &mut Vec<Fault>) {
         if !is_right {
             let what = format!("the words of `{key}` have {} in them", braced(&used));
             let remedy = format!("{} is what there is", braced(names_of_key));
-            found.push(Fault::wrong(text.span().start, what, remedy));
+            found.push(Fault::wrong(text, what, remedy));
         }
     }
     for (key, _) in words.iter().filter(|(key, _)| !keys.contains_key(key.get_ref())) {
         let what = format!("no page says `{}` of `[{table}]`", key.get_ref());
-        found.push(Fault::wrong(key.span().start, what, "leave it out, or correct the key"));
+        found.push(Fault::wrong(key, what, "leave it out, or correct the key"));
     }
 }
 
