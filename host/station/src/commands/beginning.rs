@@ -93,14 +93,14 @@ impl SettingsFile {
 /// The settings in the file `path`.
 pub(super) fn settings(path: &Path) -> Result<Settings, Failure> {
     let path = path::absolute(path).map_err(Failure::call)?;
-    Settings::load(&path).map_err(Failure::call)
+    Ok(Settings::load(&path)?)
 }
 
 /// The settings in the file `path` for a command that needs no lanes: a plant has none, nor has a station that only
 /// takes jobs.
 pub(super) fn load_without_lanes(path: &Path) -> Result<Settings, Failure> {
     let path = path::absolute(path).map_err(Failure::call)?;
-    Settings::load_without_lanes(&path).map_err(Failure::call)
+    Ok(Settings::load_without_lanes(&path)?)
 }
 
 /// `[plant]` of these settings.

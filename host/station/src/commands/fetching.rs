@@ -102,16 +102,10 @@ fn all_fetched(kept: &KeptPlans, offers: Offers) -> Result<(), Failure> {
 
 /// What the settings take from the plant.
 pub(super) fn published(settings: &SettingsFile) -> Result<PlansOfPlant, Failure> {
-    Settings::plans_of_plant(&settings.path()?).map_err(Failure::call)
+    Ok(Settings::plans_of_plant(&settings.path()?)?)
 }
 
 /// Where the plant is.
 pub(super) fn address(PlansOfPlant { plant, .. }: &PlansOfPlant) -> Result<PlantAddress, Failure> {
     Ok(plant.as_ref().ok_or_else(|| Failure::call(NoPlant))?.address()?)
-}
-
-impl From<FetchError> for Failure {
-    fn from(error: FetchError) -> Self {
-        Self::error(error)
-    }
 }

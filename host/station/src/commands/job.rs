@@ -132,10 +132,10 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 }
 
 fn add_jobs(address: &PlantAddress, add: &Add) -> Result<Exit, Failure> {
-    let plan = Plan::load(&add.plan).map_err(Failure::call)?;
+    let plan = Plan::load(&add.plan)?;
     let wanted = match (&add.about.serial, &add.about.kind) {
         (Some(serial), _) => {
-            plan.select(serial).map_err(Failure::call)?;
+            plan.select(serial)?;
             Wanted::Serial(serial.clone())
         }
         (None, kind) => Wanted::Kind(kind.clone().unwrap_or_default()),

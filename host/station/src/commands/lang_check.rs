@@ -23,7 +23,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let faults = match &arguments.file {
         Some(path) => {
-            let text = text_of(path).map_err(Failure::call)?;
+            let text = text_of(path)?;
             faults(path, &text)?
         }
         None => language::built_in()
@@ -41,6 +41,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn faults(path: &Path, text: &str) -> Result<Vec<String>, Failure> {
-    let faults = language::faults(path, text).map_err(Failure::call)?;
+    let faults = language::faults(path, text)?;
     Ok(faults.iter().map(ToString::to_string).collect())
 }

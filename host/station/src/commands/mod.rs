@@ -43,7 +43,14 @@ pub use document::{code, failure};
 
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
-use crate::store::StoreError;
+use crate::input_error::InputError;
+use crate::outbox::OutboxError;
+use crate::plan::serial::SerialError;
+use crate::published::{BundleError, FetchError, SigningError};
+use crate::secret::SecretError;
+use crate::settings::PlantSettingsError;
+use crate::store::{PlantError, StoreError};
+use crate::web::{TokenError, UserError};
 
 /// Judges boards on a production line by plans, and keeps every result.
 #[derive(Debug, Parser)]
@@ -176,10 +183,20 @@ impl Cli {
     }
 }
 
-impl From<Unprinted> for Failure {
-    fn from(error: Unprinted) -> Self {
-        Self::error(error)
-    }
+/// Errors with the same exit code whichever command meets them.
+macro_rules! failures {
+    ($($exit:ident: $($error:ty),+;)+) => {$($(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::$exit(error)
+            }
+        }
+    )+)+};
+}
+
+failures! {
+    call: BundleError, InputError, PlantSettingsError, SecretError, SerialError, SigningError, TokenError, UserError;
+    error: FetchError, OutboxError, PlantError, Unprinted;
 }
 
 impl From<StoreError> for Failure {

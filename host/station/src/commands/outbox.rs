@@ -9,7 +9,7 @@ use super::looking::{either, table, time};
 use super::why::{Why, at_station};
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::outbox::{OutboxError, all};
+use crate::outbox::all;
 use crate::settings::Settings;
 use crate::store::{DEAD_SHOWN, Dead, Folder, SharedStore, Snapshot, Store, Unsent};
 
@@ -214,10 +214,4 @@ pub(super) struct SinkInUse {
 )]
 pub(super) struct SinkUnknown {
     pub(super) sink: String,
-}
-
-impl From<OutboxError> for Failure {
-    fn from(error: OutboxError) -> Self {
-        Self::error(error)
-    }
 }

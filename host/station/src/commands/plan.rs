@@ -45,10 +45,10 @@ enum Command {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     match &arguments.command {
         Command::Check { file, serial } => {
-            let plan = Plan::load(file).map_err(Failure::call)?;
+            let plan = Plan::load(file)?;
             print(&match serial {
                 Some(serial) => {
-                    let (serial, selected) = plan.select(serial).map_err(Failure::call)?;
+                    let (serial, selected) = plan.select(serial)?;
                     format!("{}\n{}", head(&plan), variant(&serial.variant, selected))
                 }
                 None => {

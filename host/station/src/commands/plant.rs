@@ -14,8 +14,8 @@ use super::{Failure, check, print};
 use crate::check::check_plant;
 use crate::console;
 use crate::exit::Exit;
-use crate::settings::{PlantSettingsError, Settings};
-use crate::store::{Plant, PlantError, Snapshot};
+use crate::settings::Settings;
+use crate::store::{Plant, Snapshot};
 use crate::web::{Access, App, Server, User, Who};
 
 /// How often the progress of something long is printed.
@@ -121,7 +121,7 @@ fn serve(settings: Settings) -> Result<Exit, Failure> {
     let signal = Signal::heed()?;
     std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
     let everybody = User { name: String::new(), who: Who::Reader };
-    let access = Access::of(&settings, everybody).map_err(Failure::call)?;
+    let access = Access::of(&settings, everybody)?;
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
     let at = listener.local_addr().map_err(Failure::error)?;
     let app = App::of_plant(settings, address, access.at(at.port()));
@@ -139,16 +139,4 @@ fn serve(settings: Settings) -> Result<Exit, Failure> {
 )]
 pub(super) struct NoStation {
     pub(super) station: String,
-}
-
-impl From<PlantError> for Failure {
-    fn from(error: PlantError) -> Self {
-        Self::error(error)
-    }
-}
-
-impl From<PlantSettingsError> for Failure {
-    fn from(error: PlantSettingsError) -> Self {
-        Self::call(error)
-    }
 }

@@ -15,9 +15,7 @@ use super::{Failure, print};
 use crate::exit::Exit;
 use crate::history::PlanName;
 use crate::plan::Plan;
-use crate::published::{
-    Bundle, BundleError, PublicKey, Signed, SigningError, SigningKey, Statement, look_whole,
-};
+use crate::published::{Bundle, PublicKey, Signed, SigningKey, Statement, look_whole};
 use crate::store::{Plant, PlantPool, publications};
 
 /// Publish a plan with its files at the plant: every station that names it takes it when it starts next
@@ -102,7 +100,7 @@ pub(super) enum PublishError {
 
 /// Makes an engineer's key in a new file, and prints what stations know it by.
 pub(super) fn key(file: &Path) -> Result<Exit, Failure> {
-    let key = SigningKey::draw(file).map_err(Failure::call)?;
+    let key = SigningKey::draw(file)?;
     let shown = print(&key.public().to_string());
     if shown.is_err() {
         // No station can be told of it.
@@ -112,7 +110,7 @@ pub(super) fn key(file: &Path) -> Result<Exit, Failure> {
 }
 
 pub(super) fn publish(Publish { settings, file, signer }: &Publish) -> Result<Exit, Failure> {
-    let plan = Plan::load(file).map_err(Failure::call)?;
+    let plan = Plan::load(file)?;
     let bundle = Bundle::of(file, &plan)?;
     let name = PlanName::from(&plan);
     if name.product.contains('/') {
@@ -233,16 +231,4 @@ fn text(found: &[Holds]) -> String {
         vec![format!("{product}/{name}"), version, number.to_string(), time(*at_ms), operator, reason]
     };
     table(&["plan", "version", "number", "since", "by", "why"], &[2], found.iter().map(row))
-}
-
-impl From<BundleError> for Failure {
-    fn from(error: BundleError) -> Self {
-        Self::call(error)
-    }
-}
-
-impl From<SigningError> for Failure {
-    fn from(error: SigningError) -> Self {
-        Self::call(error)
-    }
 }

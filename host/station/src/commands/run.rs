@@ -86,7 +86,7 @@ fn memory(text: &str) -> Result<u64, String> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let plan_file = path::absolute(&arguments.plan).map_err(Failure::call)?;
-    let plan = Plan::load(&plan_file).map_err(Failure::call)?;
+    let plan = Plan::load(&plan_file)?;
     let (serial, board) = arguments.subject(&plan)?;
     let board = LaneBoard::Own(board);
     let signal = Signal::heed()?;
@@ -133,7 +133,7 @@ impl Arguments {
         let is_checked_by_mock = plan.production.shift.as_ref().is_some_and(|shift| shift.bad == Bad::Mock);
         match (&self.serial, &self.board) {
             (Some(serial), Some(board)) => {
-                plan.select(serial).map_err(Failure::call)?;
+                plan.select(serial)?;
                 link::check(board).map_err(Failure::call)?;
                 Ok((serial.clone(), board.clone()))
             }

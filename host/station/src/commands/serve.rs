@@ -72,7 +72,7 @@ fn until_signal(
 ) -> Result<Exit, Failure> {
     let Served { settings, everybody, hints, .. } = served;
     let signal = ready.signal.clone();
-    let access = Access::of(settings, everybody).map_err(Failure::call)?;
+    let access = Access::of(settings, everybody)?;
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
     let at = listener.local_addr().map_err(Failure::error)?;
     let engine = Arc::new(ready.start()?);

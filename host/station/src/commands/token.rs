@@ -5,7 +5,7 @@ use clap::{Args, Subcommand};
 use super::beginning::SettingsFile;
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::web::{Scope, TokenError, Tokens, add_token};
+use crate::web::{Scope, Tokens, add_token};
 
 /// Say which machines may read the pages
 ///
@@ -63,7 +63,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             print(&format!("{name} may not read any more"))
         }
         Action::List => {
-            let tokens = Tokens::load_or_none(file).map_err(Failure::call)?;
+            let tokens = Tokens::load_or_none(file)?;
             let lines: Vec<_> =
                 tokens.names().map(|(name, scope)| format!("{:<5} {name}", word(scope))).collect();
             print(&lines.join("\n"))
@@ -74,11 +74,5 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 fn word(scope: Scope) -> &'static str {
     match scope {
         Scope::Read => "read",
-    }
-}
-
-impl From<TokenError> for Failure {
-    fn from(error: TokenError) -> Self {
-        Self::call(error)
     }
 }

@@ -14,7 +14,7 @@ use super::beginning::SettingsFile;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
-use crate::web::{Role, UserError, Users, add_user};
+use crate::web::{Role, Users, add_user};
 
 /// Say who may act on the pages
 ///
@@ -68,7 +68,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             print(&format!("{name} may not act any more"))
         }
         Action::List => {
-            let users = Users::load_or_none(&access.users).map_err(Failure::call)?;
+            let users = Users::load_or_none(&access.users)?;
             let lines: Vec<_> =
                 users.names().map(|(name, role)| format!("{:<9} {name}", word(role))).collect();
             print(&lines.join("\n"))
@@ -140,10 +140,4 @@ fn until_typed(stdin: &Stdin, signals: &SignalFd) -> io::Result<bool> {
     }
     let [_, signalled] = either.map(|fd| fd.revents().is_some_and(|events| !events.is_empty()));
     Ok(!signalled)
-}
-
-impl From<UserError> for Failure {
-    fn from(error: UserError) -> Self {
-        Self::call(error)
-    }
 }
