@@ -14,7 +14,7 @@ use axum::http::HeaderMap;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse as _, Response};
 
-use self::text::{Format, Kind, Label, Metric, Text};
+use self::text::{Format, Label, Metric, Text, info};
 use super::routes::{Route, Who, look};
 use super::state::App;
 use super::trouble::Trouble;
@@ -40,11 +40,7 @@ async fn metrics(State(app): State<App>, visit: Visit, headers: HeaderMap) -> Re
     Ok((headers, text.end()).into_response())
 }
 
-const BUILD: Metric = Metric {
-    name: "halfrow_build",
-    kind: Kind::Info,
-    help: "The program's version, with the commit that it was built from.",
-};
+const BUILD: Metric = info("halfrow_build", "The program's version, with the commit that it was built from.");
 
 /// Writes runs by verdict, units, and units that passed at first, as these three metrics; `labels` are those of a cell.
 fn counted(

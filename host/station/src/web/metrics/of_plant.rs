@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::text::{Kind, Label, Metric, Text};
+use super::text::{Label, Metric, Text, counter, gauge, info};
 use super::{counted, turns};
 use crate::history::counts::{Cell, Count};
 use crate::history::mismatch::mismatches;
@@ -10,50 +10,32 @@ use crate::history::stations::{Station, stations};
 use crate::web::state::App;
 use crate::web::visit::Visit;
 
-const PLANT: Metric = Metric { name: "halfrow_plant", kind: Kind::Info, help: "The plant's name." };
-const UP: Metric = Metric {
-    name: "halfrow_plant_up",
-    kind: Kind::Gauge,
-    help: "1 if the plant's database is reachable and has this program's version, 0 if all other figures are missing here.",
-};
-const VERSION: Metric = Metric {
-    name: "halfrow_plant_schema_version",
-    kind: Kind::Gauge,
-    help: "The version of the plant's tables.",
-};
-const RUNS: Metric =
-    Metric { name: "halfrow_plant_runs", kind: Kind::Counter, help: "Finished runs at the plant." };
-const UNITS: Metric = Metric {
-    name: "halfrow_plant_units_judged",
-    kind: Kind::Gauge,
-    help: "Units at the plant that were first judged at the station.",
-};
-const FIRST: Metric = Metric {
-    name: "halfrow_plant_units_first_passed",
-    kind: Kind::Gauge,
-    help: "Judged units whose first judgement is PASS.",
-};
-const SEEN: Metric = Metric {
-    name: "halfrow_plant_station_seen_timestamp_seconds",
-    kind: Kind::Gauge,
-    help: "When the station was last heard from, by the plant's clock; it reports every half minute.",
-};
-const UNSENT: Metric = Metric {
-    name: "halfrow_plant_station_unsent_entries",
-    kind: Kind::Gauge,
-    help: "Entries that the plant does not have from the station yet, as the station last reported.",
-};
-const DEAD: Metric = Metric {
-    name: "halfrow_plant_station_dead_letters",
-    kind: Kind::Gauge,
-    help: "Entries among these that wait for a person.",
-};
+const PLANT: Metric = info("halfrow_plant", "The plant's name.");
+const UP: Metric = gauge(
+    "halfrow_plant_up",
+    "1 if the plant's database is reachable and has this program's version, 0 if all other figures are missing here.",
+);
+const VERSION: Metric = gauge("halfrow_plant_schema_version", "The version of the plant's tables.");
+const RUNS: Metric = counter("halfrow_plant_runs", "Finished runs at the plant.");
+const UNITS: Metric =
+    gauge("halfrow_plant_units_judged", "Units at the plant that were first judged at the station.");
+const FIRST: Metric =
+    gauge("halfrow_plant_units_first_passed", "Judged units whose first judgement is PASS.");
+const SEEN: Metric = gauge(
+    "halfrow_plant_station_seen_timestamp_seconds",
+    "When the station was last heard from, by the plant's clock; it reports every half minute.",
+);
+const UNSENT: Metric = gauge(
+    "halfrow_plant_station_unsent_entries",
+    "Entries that the plant does not have from the station yet, as the station last reported.",
+);
+const DEAD: Metric =
+    gauge("halfrow_plant_station_dead_letters", "Entries among these that wait for a person.");
 
-const MISMATCHES: Metric = Metric {
-    name: "halfrow_plant_device_mismatches",
-    kind: Kind::Gauge,
-    help: "Devices and units that are bound to each other at a station but not at the plant.",
-};
+const MISMATCHES: Metric = gauge(
+    "halfrow_plant_device_mismatches",
+    "Devices and units that are bound to each other at a station but not at the plant.",
+);
 
 /// What the plant holds.
 #[derive(Default)]

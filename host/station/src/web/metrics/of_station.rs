@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::text::{Kind, Label, Metric, Text};
+use super::text::{Label, Metric, Text, counter, gauge, histogram, info};
 use super::{counted, turns};
 use crate::clock;
 use crate::engine::{Figures, LaneState};
@@ -15,76 +15,44 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-const STATION: Metric = Metric { name: "halfrow_station", kind: Kind::Info, help: "The station's name." };
-const WELL: Metric = Metric {
-    name: "halfrow_engine_well",
-    kind: Kind::Gauge,
-    help: "1 while the engine works, 0 once its thread has not responded for five seconds.",
-};
-const READABLE: Metric = Metric {
-    name: "halfrow_store_readable",
-    kind: Kind::Gauge,
-    help: "1 if the station's store could be read, 0 if its figures are missing here.",
-};
-const STATE: Metric = Metric {
-    name: "halfrow_lane_state",
-    kind: Kind::Gauge,
-    help: "1 for the lane's present state, 0 for all others.",
-};
-const UNSAVED: Metric = Metric {
-    name: "halfrow_unsaved_results",
-    kind: Kind::Gauge,
-    help: "Results that could not be saved yet; their lanes accept no board.",
-};
-const AWAITS: Metric = Metric {
-    name: "halfrow_lane_awaits_plant",
-    kind: Kind::Gauge,
-    help: "1 while the lane is UNSAVED although its result is saved, because it must reach the plant and has not yet.",
-};
-const KILLS: Metric = Metric {
-    name: "halfrow_lane_kills",
-    kind: Kind::Counter,
-    help: "Runs since the start whose process had to be killed because it was silent or took too long.",
-};
-const REFUSALS: Metric = Metric {
-    name: "halfrow_refusals",
-    kind: Kind::Counter,
-    help: "Scans since the start that led to no run, and acts that the audit could not take, because of the station itself.",
-};
-const RUNS: Metric =
-    Metric { name: "halfrow_runs", kind: Kind::Counter, help: "Finished runs in the store." };
-const UNITS: Metric =
-    Metric { name: "halfrow_units_judged", kind: Kind::Gauge, help: "Judged units in the store." };
-const FIRST: Metric = Metric {
-    name: "halfrow_units_first_passed",
-    kind: Kind::Gauge,
-    help: "Judged units whose first judgement is PASS.",
-};
-const SECONDS: Metric = Metric {
-    name: "halfrow_run_seconds",
-    kind: Kind::Histogram,
-    help: "How long runs took, since the start.",
-};
-const COMMIT: Metric = Metric {
-    name: "halfrow_commit_seconds",
-    kind: Kind::Histogram,
-    help: "Time from the end of a run until its result was saved and read back, since the start.",
-};
-const ENTRIES: Metric = Metric {
-    name: "halfrow_outbox_entries",
-    kind: Kind::Gauge,
-    help: "Entries that the sink does not have yet.",
-};
-const DEAD: Metric = Metric {
-    name: "halfrow_outbox_dead_letters",
-    kind: Kind::Gauge,
-    help: "Entries among these that wait for a person.",
-};
-const OLDEST: Metric = Metric {
-    name: "halfrow_outbox_oldest_seconds",
-    kind: Kind::Gauge,
-    help: "Age of the oldest entry that the sink does not have yet; 0 if there is none.",
-};
+const STATION: Metric = info("halfrow_station", "The station's name.");
+const WELL: Metric = gauge(
+    "halfrow_engine_well",
+    "1 while the engine works, 0 once its thread has not responded for five seconds.",
+);
+const READABLE: Metric = gauge(
+    "halfrow_store_readable",
+    "1 if the station's store could be read, 0 if its figures are missing here.",
+);
+const STATE: Metric = gauge("halfrow_lane_state", "1 for the lane's present state, 0 for all others.");
+const UNSAVED: Metric =
+    gauge("halfrow_unsaved_results", "Results that could not be saved yet; their lanes accept no board.");
+const AWAITS: Metric = gauge(
+    "halfrow_lane_awaits_plant",
+    "1 while the lane is UNSAVED although its result is saved, because it must reach the plant and has not yet.",
+);
+const KILLS: Metric = counter(
+    "halfrow_lane_kills",
+    "Runs since the start whose process had to be killed because it was silent or took too long.",
+);
+const REFUSALS: Metric = counter(
+    "halfrow_refusals",
+    "Scans since the start that led to no run, and acts that the audit could not take, because of the station itself.",
+);
+const RUNS: Metric = counter("halfrow_runs", "Finished runs in the store.");
+const UNITS: Metric = gauge("halfrow_units_judged", "Judged units in the store.");
+const FIRST: Metric = gauge("halfrow_units_first_passed", "Judged units whose first judgement is PASS.");
+const SECONDS: Metric = histogram("halfrow_run_seconds", "How long runs took, since the start.");
+const COMMIT: Metric = histogram(
+    "halfrow_commit_seconds",
+    "Time from the end of a run until its result was saved and read back, since the start.",
+);
+const ENTRIES: Metric = gauge("halfrow_outbox_entries", "Entries that the sink does not have yet.");
+const DEAD: Metric = gauge("halfrow_outbox_dead_letters", "Entries among these that wait for a person.");
+const OLDEST: Metric = gauge(
+    "halfrow_outbox_oldest_seconds",
+    "Age of the oldest entry that the sink does not have yet; 0 if there is none.",
+);
 
 /// What the store holds.
 type StoreFigures = (BTreeMap<Cell, Count>, Vec<Unsent>);

@@ -49,7 +49,7 @@ impl Format {
 
 /// The kind of a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+enum Kind {
     Counter,
     Gauge,
     Histogram,
@@ -61,10 +61,26 @@ pub(super) enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Metric {
     /// Its name without the suffix of its kind. A metric whose name ends in `_seconds` is in seconds.
-    pub(super) name: &'static str,
-    pub(super) kind: Kind,
+    name: &'static str,
+    kind: Kind,
     /// What it is, in a sentence.
-    pub(super) help: &'static str,
+    help: &'static str,
+}
+
+pub(super) const fn counter(name: &'static str, help: &'static str) -> Metric {
+    Metric { name, kind: Kind::Counter, help }
+}
+
+pub(super) const fn gauge(name: &'static str, help: &'static str) -> Metric {
+    Metric { name, kind: Kind::Gauge, help }
+}
+
+pub(super) const fn histogram(name: &'static str, help: &'static str) -> Metric {
+    Metric { name, kind: Kind::Histogram, help }
+}
+
+pub(super) const fn info(name: &'static str, help: &'static str) -> Metric {
+    Metric { name, kind: Kind::Info, help }
 }
 
 impl Metric {
