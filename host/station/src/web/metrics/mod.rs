@@ -30,7 +30,7 @@ pub(super) fn routes() -> Vec<Route> {
 async fn metrics(State(app): State<App>, visit: Visit, headers: HeaderMap) -> Result<Response, Trouble> {
     let format = Format::asked(&headers);
     let mut text = Text::new(format);
-    text.of(&BUILD).put(&[("version", halfrow::VERSION)], 1_u64);
+    text.of(&BUILD).put(&[("version", halfrow::VERSION)], 1);
     if app.is_plant() {
         of_plant::write(&mut text, &app, &visit).await;
     } else {

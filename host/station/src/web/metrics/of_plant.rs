@@ -43,19 +43,19 @@ struct PlantFigures {
     version: Option<u64>,
     counts: BTreeMap<Cell, Count>,
     stations: Vec<Station>,
-    mismatches: Option<u64>,
+    mismatches: Option<usize>,
 }
 
 /// Writes all figures. They say so if the plant is away.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) {
     let held = turns::counted(app, visit, |now, tally| {
         let version = Some(now.version()?.unsigned_abs());
-        let mismatches = Some(mismatches(now)?.len() as u64);
+        let mismatches = Some(mismatches(now)?.len());
         Ok(PlantFigures { version, counts: tally.counts(now)?, stations: stations(now)?, mismatches })
     });
     let held = held.await;
-    text.of(&PLANT).put(&[("plant", app.station())], 1_u64);
-    text.of(&UP).put(&[], held.is_some());
+    text.of(&PLANT).put(&[("plant", app.station())], 1);
+    text.of(&UP).put(&[], u64::from(held.is_some()));
     let PlantFigures { version, counts, stations, mismatches } = held.unwrap_or_default();
     let mut of = text.of(&VERSION);
     if let Some(version) = version {
@@ -80,10 +80,10 @@ fn heard(text: &mut Text, stations: &[Station]) {
     }
     let mut of = text.of(&UNSENT);
     for station in stations {
-        of.put(&[("station", &station.name)], u64::from(station.unsent));
+        of.put(&[("station", &station.name)], station.unsent);
     }
     let mut of = text.of(&DEAD);
     for station in stations {
-        of.put(&[("station", &station.name)], u64::from(station.dead));
+        of.put(&[("station", &station.name)], station.dead);
     }
 }

@@ -62,9 +62,9 @@ pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(
     let engine = &app.lanes(visit)?.engine;
     let kept: Option<StoreFigures> =
         turns::counted(app, visit, |now, tally| Ok((tally.counts(now)?, now.unsent()?))).await;
-    text.of(&STATION).put(&[("station", app.station())], 1_u64);
-    text.of(&WELL).put(&[], engine.is_well());
-    text.of(&READABLE).put(&[], kept.is_some());
+    text.of(&STATION).put(&[("station", app.station())], 1);
+    text.of(&WELL).put(&[], u64::from(engine.is_well()));
+    text.of(&READABLE).put(&[], u64::from(kept.is_some()));
     lanes(text, &engine.lanes());
     since_the_start(text, &engine.figures());
     let (counts, unsent) = kept.unzip();
@@ -78,14 +78,14 @@ fn lanes(text: &mut Text, lanes: &[LaneState]) {
     let mut of = text.of(&STATE);
     for lane in lanes {
         for word in Word::ALL {
-            of.put(&[("lane", &lane.lane), ("state", word.name())], lane.state == word);
+            of.put(&[("lane", &lane.lane), ("state", word.name())], u64::from(lane.state == word));
         }
     }
     let is_unsaved = |lane: &&LaneState| lane.state == Word::Unsaved && !lane.awaits_plant;
-    text.of(&UNSAVED).put(&[], lanes.iter().filter(is_unsaved).count() as u64);
+    text.of(&UNSAVED).put(&[], lanes.iter().filter(is_unsaved).count());
     let mut of = text.of(&AWAITS);
     for lane in lanes {
-        of.put(&[("lane", &lane.lane)], lane.awaits_plant);
+        of.put(&[("lane", &lane.lane)], u64::from(lane.awaits_plant));
     }
 }
 
@@ -128,12 +128,12 @@ fn labels(Cell { plan, lane, .. }: &Cell) -> [Label<'_>; 3] {
 /// What is unsent at every sink, also at those that have everything.
 fn outbox(text: &mut Text, settings: &Settings, unsent: Option<&[Unsent]>) {
     let now_ms = clock::now_ms();
-    let mut sinks: BTreeMap<&str, (u64, u64, f64)> = BTreeMap::new();
+    let mut sinks: BTreeMap<&str, (u32, u32, f64)> = BTreeMap::new();
     if let Some(unsent) = unsent {
         sinks.extend(settings.sink_names().map(|sink| (sink, (0, 0, 0.0))));
         for Unsent { sink, entries, dead, since_ms, .. } in unsent {
             let age = now_ms.saturating_sub(*since_ms).max(0) as f64 / 1000.0;
-            sinks.insert(sink, (u64::from(*entries), u64::from(*dead), age));
+            sinks.insert(sink, (*entries, *dead, age));
         }
     }
     let mut of = text.of(&ENTRIES);

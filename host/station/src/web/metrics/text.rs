@@ -3,7 +3,7 @@
 //!
 //! The existing libraries know only one of the two each, and there is little more to it than these lines.
 
-use std::fmt::{Display, Write as _};
+use std::fmt::{Debug, Write as _};
 
 use axum::http::HeaderMap;
 use axum::http::header::ACCEPT;
@@ -94,41 +94,6 @@ impl Metric {
     }
 }
 
-/// A number.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Number {
-    Whole(u64),
-    Real(f64),
-}
-
-impl From<u64> for Number {
-    fn from(number: u64) -> Self {
-        Self::Whole(number)
-    }
-}
-
-impl From<bool> for Number {
-    fn from(is: bool) -> Self {
-        Self::Whole(u64::from(is))
-    }
-}
-
-impl From<f64> for Number {
-    fn from(number: f64) -> Self {
-        Self::Real(number)
-    }
-}
-
-impl Display for Number {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Whole(number) => write!(f, "{number}"),
-            // With a point, as OpenMetrics wants the bounds of a histogram.
-            Self::Real(number) => write!(f, "{number:?}"),
-        }
-    }
-}
-
 /// A label with its value.
 pub(super) type Label<'a> = (&'static str, &'a str);
 
@@ -181,26 +146,26 @@ pub(super) struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    /// Writes a sample with these labels.
-    pub(super) fn put(&mut self, labels: &[Label<'_>], number: impl Into<Number>) {
-        self.line(self.metric.suffix(), labels, number.into());
+    /// Writes a sample with these labels; the number is a whole or a real one.
+    pub(super) fn put(&mut self, labels: &[Label<'_>], number: impl Debug) {
+        self.line(self.metric.suffix(), labels, number);
     }
 
     /// Writes a whole histogram with these labels.
     pub(super) fn spread(&mut self, labels: &[Label<'_>], of: &Histogram) {
         let mut bucket = |bound: &str, count: u64| {
             let labels = [labels, &[("le", bound)]].concat();
-            self.line("_bucket", &labels, count.into());
+            self.line("_bucket", &labels, count);
         };
         for (bound, count) in of.up_to() {
-            bucket(&Number::Real(bound).to_string(), count);
+            bucket(&format!("{bound:?}"), count);
         }
         bucket("+Inf", of.count());
-        self.line("_sum", labels, of.sum().into());
-        self.line("_count", labels, of.count().into());
+        self.line("_sum", labels, of.sum());
+        self.line("_count", labels, of.count());
     }
 
-    fn line(&mut self, suffix: &str, labels: &[Label<'_>], number: Number) {
+    fn line(&mut self, suffix: &str, labels: &[Label<'_>], number: impl Debug) {
         let _ = write!(self.text, "{}{suffix}", self.metric.name);
         for (place, (name, value)) in labels.iter().enumerate() {
             self.text.push(if place == 0 { '{' } else { ',' });
@@ -209,7 +174,8 @@ impl Samples<'_> {
             self.text.push('"');
         }
         let end = if labels.is_empty() { "" } else { "}" };
-        let _ = writeln!(self.text, "{end} {number}");
+        // Real numbers with a point, as OpenMetrics wants the bounds of a histogram.
+        let _ = writeln!(self.text, "{end} {number:?}");
     }
 }
 
