@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::database::{Database, DatabaseError, values};
 use super::{Kind, Reason, Store, StoreError, outbox, statements as sql};
 use crate::clock;
-use crate::ids;
+use crate::ids::{self, NoRandomness};
 
 /// Who does something, and why.
 #[derive(Clone, Copy, Debug)]
@@ -37,10 +37,17 @@ pub struct Deed<'a> {
     pub detail: &'a str,
 }
 
+impl<'a> Deed<'a> {
+    /// A new line of the audit, which says that this was done at `at_ms`.
+    pub(super) fn at(self, at_ms: i64) -> Result<Line<'a>, NoRandomness> {
+        Ok(Line { id: ids::new(at_ms)?.to_string(), at_ms, deed: self })
+    }
+}
+
 /// A line of the audit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(super) struct Line<'a> {
-    pub(super) id: &'a str,
+    pub(super) id: String,
     pub(super) at_ms: i64,
     pub(super) deed: Deed<'a>,
 }
@@ -49,8 +56,8 @@ impl Line<'_> {
     /// Enters the line, and an entry of the outbox for every sink.
     pub(super) fn enter(self, to: &mut dyn Database, sinks: &[String]) -> Result<(), DatabaseError> {
         let Self { id, at_ms, deed: Deed { operator, act, subject, detail } } = self;
-        to.execute(sql::ADD_AUDIT, values![id, at_ms, operator, act, subject, detail])?;
-        outbox::enter(to, sinks, Kind::Audit, id)
+        to.execute(sql::ADD_AUDIT, values![&id, at_ms, operator, act, subject, detail])?;
+        outbox::enter(to, sinks, Kind::Audit, &id)
     }
 
     /// Carries out `change`, and enters the line if it changed any row. Returns how many rows it changed.
@@ -84,10 +91,8 @@ impl Store {
         deed: Deed<'_>,
         change: impl FnOnce(&mut dyn Database) -> Result<u64, DatabaseError>,
     ) -> Result<u64, StoreError> {
-        let at_ms = clock::now_ms();
-        let id = ids::new(at_ms)?.to_string();
+        let line = deed.at(clock::now_ms())?;
         let sinks = Arc::clone(&self.sinks);
-        let line = Line { id: &id, at_ms, deed };
         self.change(doing, |to| line.enter_if_done(to, &sinks, change))
     }
 }

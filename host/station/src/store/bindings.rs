@@ -266,7 +266,7 @@ fn audit(to: &mut dyn Database, sinks: &[String], change: &Rebinding) -> Result<
     let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
     let detail = serde_json::to_string(&Detail { device: device.clone(), reason: reason.clone() })?;
     let deed = Deed { operator, act: REBIND, subject: unit_id, detail: &detail };
-    Line { id, at_ms: *at_ms, deed }.enter(to, sinks)
+    Line { id: id.clone(), at_ms: *at_ms, deed }.enter(to, sinks)
 }
 
 /// Every change by a person, the earliest first.

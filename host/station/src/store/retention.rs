@@ -4,12 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
-use super::audit::{Deed, Line};
+use super::audit::Deed;
 use super::database::values;
 use super::{Folder, Snapshot, Store, StoreError, generation, statements as sql};
 use crate::clock;
 use crate::ids;
-use crate::ids::NoRandomness;
 use crate::record::UnnamedRecord;
 
 impl Folder {
@@ -108,16 +107,9 @@ impl Store {
         why: &str,
     ) -> Result<(), StoreError> {
         let at_ms = clock::now_ms();
-        let id = |_: &String| Ok(ids::new(at_ms)?.to_string());
-        let named: Result<Vec<_>, NoRandomness> = subjects.iter().map(id).collect();
-        let named = named?;
+        let deeds = subjects.iter().map(|subject| Deed { operator, act, subject, detail: why });
+        let lines: Vec<_> = deeds.map(|deed| deed.at(at_ms)).collect::<Result<_, _>>()?;
         let sinks = Arc::clone(&self.sinks);
-        self.change("a line of the audit", |to| {
-            for (id, subject) in named.iter().zip(subjects) {
-                let deed = Deed { operator, act, subject, detail: why };
-                Line { id, at_ms, deed }.enter(to, &sinks)?;
-            }
-            Ok(())
-        })
+        self.change("a line of the audit", |to| lines.into_iter().try_for_each(|line| line.enter(to, &sinks)))
     }
 }

@@ -6,12 +6,11 @@ use halfrow::Verdict;
 use halfrow::words::plain;
 use serde::Serialize;
 
-use super::audit::{Deed, Line};
+use super::audit::Deed;
 use super::database::{Database, DatabaseError, values};
 use super::{Kind, Reason, Store, StoreError, outbox, statements as sql};
 use crate::clock;
-use crate::ids;
-use crate::ids::NoRandomness;
+use crate::ids::{self, NoRandomness};
 
 /// The audit's name for a waiver, on which `sql/waivers-unlike-audit.sql` and `sql/plant/contradicted-waivers.sql` rely.
 const WAIVE: &str = "waive";
@@ -75,15 +74,15 @@ impl Store {
             return Err(NoWaiver::NoFail { run: run.to_owned(), verdict: verdict.to_string() });
         }
         let at_ms = clock::now_ms();
-        let (id, audit) = (ids::new(at_ms)?.to_string(), ids::new(at_ms)?.to_string());
+        let id = ids::new(at_ms)?.to_string();
+        let audit = Deed { operator, act: WAIVE, subject: run, detail: reason }.at(at_ms)?;
         let sinks = Arc::clone(&self.sinks);
         let before = self.change("a waiver", |to| {
             let before = waiver_of(to, run)?;
             if before.is_none() {
                 to.execute(sql::ADD_WAIVER, values![&id, run, at_ms, operator, reason])?;
                 outbox::enter(to, &sinks, Kind::Waiver, &id)?;
-                let deed = Deed { operator, act: WAIVE, subject: run, detail: reason };
-                Line { id: &audit, at_ms, deed }.enter(to, &sinks)?;
+                audit.enter(to, &sinks)?;
             }
             Ok(before)
         })?;

@@ -1,11 +1,10 @@
 //! The audit of a plant: what people did there.
 
 use super::super::StoreError;
-use super::super::audit::{Deed, Line};
+use super::super::audit::Deed;
 use super::super::database::{Database, DatabaseError};
 use super::Plant;
 use crate::clock;
-use crate::ids;
 
 impl Plant {
     /// Enters a deed in the audit.
@@ -24,9 +23,7 @@ impl Plant {
         deed: Deed<'_>,
         change: impl FnOnce(&mut dyn Database) -> Result<u64, DatabaseError>,
     ) -> Result<bool, StoreError> {
-        let at_ms = clock::now_ms();
-        let id = ids::new(at_ms)?.to_string();
-        let line = Line { id: &id, at_ms, deed };
+        let line = deed.at(clock::now_ms())?;
         self.carry_out(doing, |database| {
             database.transaction(|to| Ok(line.enter_if_done(to, &[], change)? > 0))
         })
