@@ -1,1 +1,1 @@
-SELECT id, run_id, at_ms, operator_id, reason FROM waiver WHERE run_id = $1 ORDER BY id;
+SELECT run_id, at_ms, operator_id, reason FROM waiver WHERE run_id = $1 ORDER BY id;

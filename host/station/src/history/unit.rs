@@ -167,7 +167,7 @@ fn runs(of: &Snapshot, column: &str, value: &str) -> Result<Vec<UnitRun>, StoreE
     let mut steps = by_run(of, value, &text(statements::UNIT_STEPS), step)?;
     let mut suspects = by_run(of, value, &text(statements::UNIT_SUSPECTS), suspect)?;
     let mut attachments = by_run(of, value, &text(statements::UNIT_ATTACHMENTS), attachment)?;
-    let mut waivers = by_run(of, value, &text(statements::UNIT_WAIVERS), waiver)?;
+    let mut waivers = by_run(of, value, &text(statements::UNIT_WAIVERS), Waiver::of)?;
     for run in &mut runs {
         let id = &run.line.id;
         run.steps = steps.remove(id).unwrap_or_default();
@@ -229,10 +229,6 @@ fn attachment(row: &Found<'_>) -> Result<Attachment, DatabaseError> {
     let bytes: i64 = row.get(3)?;
     let (name, sha256, media_type) = (row.get(1)?, row.get(2)?, row.get(4)?);
     Ok(Attachment { name, sha256, bytes: bytes.unsigned_abs(), media_type })
-}
-
-fn waiver(row: &Found<'_>) -> Result<Waiver, DatabaseError> {
-    Ok(Waiver { run: row.get(0)?, at_ms: row.get(1)?, operator: row.get(2)?, reason: row.get(3)? })
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use halfrow::words::plain;
 use serde::Serialize;
 
 use super::audit::Deed;
-use super::database::{Database, DatabaseError, values};
+use super::database::{DatabaseError, Row, values};
 use super::{Kind, Reason, Store, StoreError, outbox, statements as sql};
 use crate::clock;
 use crate::ids::{self, NoRandomness};
@@ -26,6 +26,13 @@ pub struct Waiver {
     pub operator: String,
     /// Why.
     pub reason: String,
+}
+
+impl Waiver {
+    /// The waiver in a row of its run, moment, operator and reason.
+    pub(crate) fn of(row: &Row<'_>) -> Result<Self, DatabaseError> {
+        Ok(Self { run: row.get(0)?, at_ms: row.get(1)?, operator: row.get(2)?, reason: row.get(3)? })
+    }
 }
 
 /// A waiver that is not given.
@@ -78,7 +85,7 @@ impl Store {
         let audit = Deed { operator, act: WAIVE, subject: run, detail: reason }.at(at_ms)?;
         let sinks = Arc::clone(&self.sinks);
         let before = self.change("a waiver", |to| {
-            let before = waiver_of(to, run)?;
+            let before = to.first(sql::WAIVER_OF, values![run], Waiver::of)?;
             if before.is_none() {
                 to.execute(sql::ADD_WAIVER, values![&id, run, at_ms, operator, reason])?;
                 outbox::enter(to, &sinks, Kind::Waiver, &id)?;
@@ -92,10 +99,4 @@ impl Store {
         let [run, operator, reason] = [run, operator, reason].map(str::to_owned);
         Ok(Waiver { run, at_ms, operator, reason })
     }
-}
-
-fn waiver_of(database: &mut dyn Database, run: &str) -> Result<Option<Waiver>, DatabaseError> {
-    database.first(sql::WAIVER_OF, values![run], |row| {
-        Ok(Waiver { run: row.get(1)?, at_ms: row.get(2)?, operator: row.get(3)?, reason: row.get(4)? })
-    })
 }

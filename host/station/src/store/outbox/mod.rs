@@ -280,10 +280,7 @@ impl Folder {
             }
             Kind::Waiver => {
                 let waiver = self.read("to tell a waiver", |from| {
-                    from.first(sql::WAIVER_BY_ID, values![subject], |row| {
-                        let (run, at_ms) = (row.get(0)?, row.get(1)?);
-                        Ok(Waiver { run, at_ms, operator: row.get(2)?, reason: row.get(3)? })
-                    })
+                    from.first(sql::WAIVER_BY_ID, values![subject], Waiver::of)
                 })?;
                 Ok(Parcel::Waiver { id: subject.clone(), waiver: waiver.ok_or_else(otherwise)? })
             }
