@@ -1,6 +1,6 @@
 //! Files of secrets, which nobody else may read.
 
-use std::fs::{self, Metadata, Permissions};
+use std::fs::{self, File, Metadata, Permissions};
 use std::io::{self, Write as _};
 use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use halfrow::files::written_aside::{Claim, folder_of, sync_folder};
 use nix::unistd::{getegid, geteuid};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use tempfile::{Builder, NamedTempFile};
+use tempfile::{Builder, NamedTempFile, PersistError};
 
 /// A file of secrets that cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -63,18 +63,26 @@ pub enum SecretError {
     NoRandomness(#[source] rand::rngs::SysError),
 }
 
-/// A file beside `path` that nobody else may read, to be put in its place.
-fn aside(path: &Path) -> io::Result<NamedTempFile> {
-    Builder::new().permissions(Permissions::from_mode(0o600)).tempfile_in(folder_of(path))
+/// Writes a file that nobody else may read, completely or not at all; with `lasts` it survives a power cut. `persist` is what puts it
+/// in its place.
+fn put<'a>(
+    path: &'a Path,
+    text: &str,
+    lasts: bool,
+    persist: impl FnOnce(NamedTempFile, &'a Path) -> Result<File, PersistError>,
+) -> io::Result<()> {
+    let mut aside = Builder::new().permissions(Permissions::from_mode(0o600)).tempfile_in(folder_of(path))?;
+    aside.write_all(text.as_bytes())?;
+    if lasts {
+        aside.as_file().sync_all()?;
+    }
+    persist(aside, path)?;
+    if lasts { sync_folder(folder_of(path)) } else { Ok(()) }
 }
 
-/// Creates a new file of one line that nobody else may read, completely or not at all.
+/// Creates a new file of one line, like [`put`].
 pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
-    let mut aside = aside(path)?;
-    writeln!(aside, "{line}")?;
-    aside.as_file().sync_all()?;
-    aside.persist_noclobber(path)?;
-    sync_folder(folder_of(path))
+    put(path, &format!("{line}\n"), true, NamedTempFile::persist_noclobber)
 }
 
 /// The text of a file that the station writes itself, and that nobody else may read.
@@ -132,21 +140,6 @@ impl Rights {
     }
 }
 
-/// Writes `secrets` to the file `path`, which nobody else may read, completely or not at all; with `lasts` it survives a power
-/// cut.
-fn keep(path: &Path, secrets: &str, lasts: bool) -> Result<(), SecretError> {
-    let write = || {
-        let mut aside = aside(path)?;
-        aside.write_all(secrets.as_bytes())?;
-        if lasts {
-            aside.as_file().sync_all()?;
-        }
-        aside.persist(path)?;
-        if lasts { sync_folder(folder_of(path)) } else { Ok(()) }
-    };
-    write().map_err(unusable(path))
-}
-
 /// The content of the TOML file `path` of secrets.
 pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, SecretError> {
     let wrong = |error: toml::de::Error| SecretError::Wrong {
@@ -179,11 +172,10 @@ where
     Ok(changed)
 }
 
-/// Writes secrets to the TOML file `path`, like [`keep`].
+/// Writes secrets to the TOML file `path`, like [`put`].
 pub(crate) fn write(path: &Path, secrets: &impl Serialize, lasts: bool) -> Result<(), SecretError> {
-    let secrets = toml::to_string(secrets).map_err(io::Error::other);
-    let secrets = secrets.map_err(unusable(path))?;
-    keep(path, &secrets, lasts)
+    let text = toml::to_string(secrets).map_err(io::Error::other);
+    text.and_then(|text| put(path, &text, lasts, NamedTempFile::persist)).map_err(unusable(path))
 }
 
 #[cfg(test)]
