@@ -32,7 +32,7 @@ pub(crate) enum Sent {
 pub(crate) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) -> Result<Sent, StoreError> {
     let mut until = Instant::now() + PATIENCE;
     loop {
-        let entry = folder.standing(SINK_OF_PLANT, run)?;
+        let entry = folder.at_plant(run)?;
         if entry.is_done {
             return Ok(Sent::Yes);
         }

@@ -3,7 +3,7 @@
 use halfrow::Verdict;
 
 use super::database::{Database, DatabaseError, values};
-use super::{Folder, SINK_OF_PLANT, StoreError, statements as sql};
+use super::{Folder, StoreError, statements as sql};
 use crate::clock;
 use crate::plan::{Again, Plan};
 
@@ -75,7 +75,7 @@ impl Folder {
         let passed = self.read("to tell whether a unit passed", |from| passed(from, plan, serial))?;
         let Some(Passed { run, at_ms: passed_ms }) = passed else { return Ok(None) };
         let (serial, when) = (serial.to_owned(), when(passed_ms));
-        Ok(Some(if is_green_at_plant && !self.standing(SINK_OF_PLANT, &run)?.is_done {
+        Ok(Some(if is_green_at_plant && !self.at_plant(&run)?.is_done {
             AgainError::NotAtPlant { serial, when }
         } else if plan.again == Again::Ask {
             AgainError::Asked { serial, when, how }

@@ -250,13 +250,13 @@ impl Folder {
         })
     }
 
-    /// The state of this run at `sink`.
+    /// The state of this run at the plant.
     ///
     /// # Errors
     /// Like [`Self::due`].
-    pub fn standing(&self, sink: &str, run: &str) -> Result<Standing, StoreError> {
+    pub fn at_plant(&self, run: &str) -> Result<Standing, StoreError> {
         let found = self.read("to tell what was sent", |from| {
-            from.first(sql::OUTBOX_ENTRY, values![sink, Kind::Run.name(), run], |row| {
+            from.first(sql::OUTBOX_ENTRY, values![SINK_OF_PLANT, Kind::Run.name(), run], |row| {
                 let [done_ms, dead_ms] = [row.get::<Option<i64>>(0)?, row.get(1)?];
                 Ok(Standing { is_done: done_ms.is_some(), is_dead: dead_ms.is_some(), said: said(row, 2)? })
             })
