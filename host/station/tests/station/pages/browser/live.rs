@@ -205,12 +205,15 @@ const HEAR: &str = "
         }
     };";
 
-/// A page of the lanes, with what [`HEAR`] records.
+/// A page of the lanes that was told of a PASS, with what [`HEAR`] records.
 fn heard(serving: &Serving) -> Chromium {
     let mut page = Chromium::open("about:blank");
     page.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": HEAR }));
     page.go(&format!("http://127.0.0.1:{}/", serving.port));
     page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    page.wait("document.querySelector('.lane.ready') !== null");
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("window.passed !== undefined && window.tones === 2");
     page
 }
 
@@ -220,9 +223,6 @@ fn a_verdict_is_told_once() {
     let station = Station::private(1);
     let serving = station.serve();
     let mut page = heard(&serving);
-    page.wait("document.querySelector('.lane.ready') !== null");
-    page.scan(SERIALS[0], "Enter", Duration::ZERO);
-    page.wait("window.passed !== undefined && window.tones === 2");
     let again = |run: &str| {
         format!(
             "(() => {{
@@ -246,9 +246,6 @@ fn a_verdict_is_told_that_came_while_the_page_heard_nothing() {
     let station = Station::private(1);
     let serving = station.serve();
     let mut page = heard(&serving);
-    page.wait("document.querySelector('.lane.ready') !== null");
-    page.scan(SERIALS[0], "Enter", Duration::ZERO);
-    page.wait("window.passed !== undefined && window.tones === 2");
     let snapshot = |run: &str| {
         format!(
             "(() => {{
@@ -274,9 +271,6 @@ fn what_one_lane_says_can_be_read_after_another_has_said_something() {
     let station = Station::private(1);
     let serving = station.serve();
     let mut page = heard(&serving);
-    page.wait("document.querySelector('.lane.ready') !== null");
-    page.scan(SERIALS[0], "Enter", Duration::ZERO);
-    page.wait("window.passed !== undefined && window.tones === 2");
     let log = "[...document.getElementById('said').children].map(line => line.textContent)";
     let pass = format!("Lane 1: PASS {}", SERIALS[0]);
     let said = page.evaluate(log);
