@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::io;
+use std::ops::RangeBounds;
 use std::path::{Path, PathBuf};
 
 use halfrow::files::text;
@@ -133,4 +134,15 @@ impl Fault {
             Why::Source(source) => InputError::Input { path, line, what, source },
         }
     }
+}
+
+/// The number that stands there, if it is in `range`.
+pub(crate) fn within<T: Copy + PartialOrd>(
+    text: &Spanned<T>,
+    range: impl RangeBounds<T>,
+    what: impl Into<String>,
+    remedy: impl Into<String>,
+) -> Result<T, Fault> {
+    let number = *text.get_ref();
+    if range.contains(&number) { Ok(number) } else { Err(Fault::wrong(text, what, remedy)) }
 }

@@ -1,5 +1,6 @@
 //! What the parts of a plan mean together.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::Duration;
 
@@ -15,7 +16,7 @@ use super::text::{
     TablesText,
 };
 use super::{Bad, Judging, Plan, Production, SCHEMA, Seed, Selected, Shift, Step, StepKind};
-use crate::input_error::{At, Fault};
+use crate::input_error::{At, Fault, within};
 
 /// Where all keys are listed.
 const KEYS: &str = "`halfrow-station plan schema` lists every key and its values";
@@ -102,11 +103,9 @@ fn shift(text: &ShiftText, rule: &SerialRule) -> Result<Shift, Fault> {
         let what = "one unit is both good and bad";
         return Err(Fault::wrong(&text.bad, what, "name two units"));
     }
-    let hours = *text.hours.get_ref();
-    if !(0.1..=MOST_SHIFT_HOURS).contains(&hours) {
-        let remedy = format!("write 0.1 to {MOST_SHIFT_HOURS} hours");
-        return Err(Fault::wrong(&text.hours, format!("no shift has {hours} hours"), remedy));
-    }
+    let what = format!("no shift has {} hours", text.hours.get_ref());
+    let remedy = format!("write 0.1 to {MOST_SHIFT_HOURS} hours");
+    let hours = within(&text.hours, 0.1..=MOST_SHIFT_HOURS, what, remedy)?;
     Ok(Shift { good: text.good.get_ref().clone(), bad, lasts: Duration::from_secs_f64(3600.0 * hours) })
 }
 
@@ -276,25 +275,15 @@ fn seconds(text: Option<&Spanned<f64>>, otherwise: Duration, most: f64) -> Resul
 }
 
 fn some_seconds(text: &Spanned<f64>, most: f64, or: &str) -> Result<Duration, Fault> {
-    let seconds = *text.get_ref();
-    if !(0.001..=most).contains(&seconds) {
-        let remedy = format!("write a number of seconds, {or}0.001 to {most}");
-        return Err(Fault::wrong(text, format!("{seconds} seconds are none that a step can take"), remedy));
-    }
-    Ok(Duration::from_secs_f64(seconds))
+    let what = format!("{} seconds are none that a step can take", text.get_ref());
+    let remedy = format!("write a number of seconds, {or}0.001 to {most}");
+    within(text, 0.001..=most, what, remedy).map(Duration::from_secs_f64)
 }
 
-fn whole(
-    text: Option<&Spanned<u32>>,
-    otherwise: u32,
-    range: std::ops::RangeInclusive<u32>,
-) -> Result<u32, Fault> {
+fn whole(text: Option<&Spanned<u32>>, otherwise: u32, range: RangeInclusive<u32>) -> Result<u32, Fault> {
     let Some(text) = text else { return Ok(otherwise) };
-    if !range.contains(text.get_ref()) {
-        let remedy = format!("write a whole number from {} to {}", range.start(), range.end());
-        return Err(Fault::wrong(text, format!("{} is out of range", text.get_ref()), remedy));
-    }
-    Ok(*text.get_ref())
+    let remedy = format!("write a whole number from {} to {}", range.start(), range.end());
+    within(text, range, format!("{} is out of range", text.get_ref()), remedy)
 }
 
 fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Limit, Fault> {

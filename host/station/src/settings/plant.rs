@@ -6,7 +6,7 @@ use toml::Spanned;
 
 use super::read::file;
 use super::text::{GreenText, PlantText};
-use crate::input_error::Fault;
+use crate::input_error::{Fault, within};
 use crate::published::PublicKey;
 use crate::secret::{self, SecretError};
 use crate::store::{PlantAddress, PlantAddressError};
@@ -53,8 +53,8 @@ impl PlantSettings {
             password_file: text.password_file.as_ref().map(|name| file(folder, name)).transpose()?,
             ca: text.ca.as_ref().map(|name| file(folder, name)).transpose()?,
             is_green_at_plant: text.green == GreenText::Plant,
-            most_unsent: most_unsent(text.most_unsent.as_ref())?,
-            most_filled: most_filled(text.most_filled.as_ref())?,
+            most_unsent: text.most_unsent.as_ref().map_or(Ok(MOST_UNSENT), most_unsent)?,
+            most_filled: text.most_filled.as_ref().map_or(Ok(MOST_FILLED), most_filled)?,
             trusts: text.trusts.iter().map(trusted).collect::<Result<_, _>>()?,
         };
         // A password is read when it is needed; all else is checked now.
@@ -86,18 +86,10 @@ fn trusted(text: &Spanned<String>) -> Result<PublicKey, Fault> {
     PublicKey::parse(text.get_ref()).map_err(|error| Fault::input(text, "a key", error))
 }
 
-fn most_unsent(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
-    let Some(text) = text else { return Ok(MOST_UNSENT) };
-    match *text.get_ref() {
-        0 => Err(Fault::wrong(text, "with none unsent no lane could judge", "give 1 or more")),
-        most => Ok(most),
-    }
+fn most_unsent(text: &Spanned<u32>) -> Result<u32, Fault> {
+    within(text, 1.., "with none unsent no lane could judge", "give 1 or more")
 }
 
-fn most_filled(text: Option<&Spanned<u8>>) -> Result<u8, Fault> {
-    let Some(text) = text else { return Ok(MOST_FILLED) };
-    match *text.get_ref() {
-        most @ 1..=100 => Ok(most),
-        most => Err(Fault::wrong(text, format!("a disk cannot be full to {most} %"), "give 1 to 100")),
-    }
+fn most_filled(text: &Spanned<u8>) -> Result<u8, Fault> {
+    within(text, 1..=100, format!("a disk cannot be full to {} %", text.get_ref()), "give 1 to 100")
 }

@@ -14,7 +14,7 @@ use super::{
     WorkSettings,
 };
 use crate::floor::Starts;
-use crate::input_error::{At, Fault};
+use crate::input_error::{At, Fault, within};
 use crate::labgrid::LaneBoard;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
 use crate::published::named_by;
@@ -58,7 +58,7 @@ pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Setti
         name: not_empty(&station.name)?,
         data,
         silence: seconds(station.silence.as_ref(), SILENCE)?,
-        memory_mib: memory(station.memory.as_ref())?,
+        memory_mib: station.memory.as_ref().map_or(Ok(MEMORY_MIB), memory)?,
         scan_then_plug: station.order == OrderText::ScanThenPlug,
         scanner: Scanner { prefix: read.scanner.prefix.clone(), suffix: read.scanner.suffix.clone() },
         plans: plans.all(),
@@ -84,19 +84,13 @@ fn work(text: &WorkText, plans: &mut Plans<'_>) -> Result<WorkSettings, Fault> {
         return Err(Fault::wrong(word, what, "write one without blanks"));
     }
     let has = text.has.iter().map(|word| word.get_ref().clone()).collect();
-    Ok(WorkSettings { plans: files, has, at_once: at_once(text.at_once.as_ref())? })
+    Ok(WorkSettings { plans: files, has, at_once: text.at_once.as_ref().map_or(Ok(1), at_once)? })
 }
 
-/// How many jobs are judged at once; by default one.
-fn at_once(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
-    let wanted = text.map_or(1, |text| *text.get_ref());
-    match text {
-        Some(text) if !(1..=MOST_AT_ONCE).contains(&wanted) => {
-            let what = format!("{wanted} jobs cannot be judged at once");
-            Err(Fault::wrong(text, what, format!("give 1 to {MOST_AT_ONCE}")))
-        }
-        _ => Ok(wanted),
-    }
+/// How many jobs are judged at once.
+fn at_once(text: &Spanned<u32>) -> Result<u32, Fault> {
+    let what = format!("{} jobs cannot be judged at once", text.get_ref());
+    within(text, 1..=MOST_AT_ONCE, what, format!("give 1 to {MOST_AT_ONCE}"))
 }
 
 fn read(text: &str) -> Result<SettingsText, Fault> {
@@ -178,15 +172,10 @@ fn address(read: &SettingsText) -> Result<Address, Fault> {
 }
 
 fn people(folder: &Path, text: &AccessText) -> Result<AccessSettings, Fault> {
-    let hours = text.hours.as_ref().map_or(HOURS, |hours| *hours.get_ref());
-    if !(0.01..=MOST_HOURS).contains(&hours) {
-        let at = text.hours.as_ref().map_or(0, At::at);
-        return Err(Fault::wrong(
-            at,
-            format!("{hours} is no number of hours"),
-            format!("give 0.01 to {MOST_HOURS}"),
-        ));
-    }
+    let hours = text.hours.as_ref().map_or(Ok(HOURS), |hours| {
+        let what = format!("{} is no number of hours", hours.get_ref());
+        within(hours, 0.01..=MOST_HOURS, what, format!("give 0.01 to {MOST_HOURS}"))
+    })?;
     let idle = Duration::from_secs_f64(3600.0 * hours);
     let tokens = text.tokens.as_ref().map(not_empty).transpose()?.map(|file| folder.join(file));
     Ok(AccessSettings { users: folder.join(not_empty(&text.users)?), tokens, idle })
@@ -205,23 +194,16 @@ pub(super) fn file(folder: &Path, written: &Spanned<String>) -> Result<PathBuf, 
 }
 
 pub(super) fn seconds(text: Option<&Spanned<f64>>, default: f64) -> Result<Duration, Fault> {
-    let value = text.map_or(default, |text| *text.get_ref());
-    let at = text.map_or(0, At::at);
-    if (0.1..=MOST_SECONDS).contains(&value) {
-        return Ok(Duration::from_secs_f64(value));
-    }
-    Err(Fault::wrong(at, format!("{value} s is no such time"), format!("give 0.1 to {MOST_SECONDS} seconds")))
+    let Some(text) = text else { return Ok(Duration::from_secs_f64(default)) };
+    let what = format!("{} s is no such time", text.get_ref());
+    let remedy = format!("give 0.1 to {MOST_SECONDS} seconds");
+    within(text, 0.1..=MOST_SECONDS, what, remedy).map(Duration::from_secs_f64)
 }
 
-fn memory(text: Option<&Spanned<u64>>) -> Result<u64, Fault> {
-    let Some(text) = text else { return Ok(MEMORY_MIB) };
+fn memory(text: &Spanned<u64>) -> Result<u64, Fault> {
     let what = format!("{} MiB are no memory for a lane", text.get_ref());
     let remedy = format!("give {} to {} MiB", MEMORIES_MIB.start(), MEMORIES_MIB.end());
-    if MEMORIES_MIB.contains(text.get_ref()) {
-        Ok(*text.get_ref())
-    } else {
-        Err(Fault::wrong(text, what, remedy))
-    }
+    within(text, MEMORIES_MIB, what, remedy)
 }
 
 fn lanes(folder: &Path, read: &SettingsText, plans: &mut Plans<'_>) -> Result<Vec<LaneSettings>, Fault> {
