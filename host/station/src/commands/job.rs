@@ -115,7 +115,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         Action::List { state, most, json } => {
             let states = match state {
                 Some(state) => vec![*state],
-                None => JobState::ALL.into_iter().filter(|state| *state != JobState::Done).collect(),
+                None => vec![JobState::Waiting, JobState::Claimed, JobState::Dead],
             };
             let found = PlantPool::new(address).look(|now| jobs(now, &states, "", *most))?;
             either(&found, *json, |found| text(found))
@@ -190,7 +190,7 @@ fn text(jobs: &[Job]) -> String {
         let state = match (&job.verdict, &job.holder) {
             (Some(verdict), _) => verdict.to_string(),
             (None, Some(holder)) if job.state == JobState::Claimed => format!("claimed by {holder}"),
-            _ => job.state.as_str().to_owned(),
+            _ => job.state.to_string(),
         };
         let plan = format!("{} {}", job.plan, job.version);
         let (tries, priority) = (job.attempts.to_string(), job.priority.to_string());

@@ -140,5 +140,5 @@ fn bounds(limit: &Limit) -> String {
     let sides = [side("at least", limit.least), side("at most", limit.most)].into_iter().flatten();
     let Measurement { name, unit, .. } = limit.measurement;
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-    format!("{name}{}{unit}, blames {}", sides.collect::<String>(), limit.blames.name())
+    format!("{name}{}{unit}, blames {}", sides.collect::<String>(), limit.blames)
 }

@@ -202,7 +202,7 @@ fn log(message: &Message) {
     match message {
         Message::Step { seq, attempt, name } => tracing::info!("step {seq}, {name}, try {attempt}"),
         Message::Doing { what } => tracing::info!("{what}"),
-        Message::Ended { step } => tracing::info!("{} {}: {}", step.name, step.outcome.name(), step.detail),
+        Message::Ended { step } => tracing::info!("{} {}: {}", step.name, step.outcome, step.detail),
         Message::Identified { board } => tracing::info!("the board says it is {}", board.name),
         Message::Begun { .. } | Message::Rows { .. } | Message::Done | Message::Refused { .. } => {}
     }

@@ -64,15 +64,8 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         }
         Action::List => {
             let tokens = Tokens::load_or_none(file)?;
-            let lines: Vec<_> =
-                tokens.names().map(|(name, scope)| format!("{:<5} {name}", word(scope))).collect();
+            let lines: Vec<_> = tokens.names().map(|(name, scope)| format!("{scope:<5} {name}")).collect();
             print(&lines.join("\n"))
         }
-    }
-}
-
-fn word(scope: Scope) -> &'static str {
-    match scope {
-        Scope::Read => "read",
     }
 }

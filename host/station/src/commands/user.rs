@@ -61,7 +61,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let badge = asked("badge")?;
             let password = if *role == Role::Engineer { asked("password")? } else { String::new() };
             add_user(&settings, &access.users, (name.trim(), *role), &badge, &password)?;
-            print(&format!("{} may act as {}", name.trim(), word(*role)))
+            print(&format!("{} may act as {role}", name.trim()))
         }
         Action::Remove { name } => {
             Users::remove_from(&access.users, name)?;
@@ -69,17 +69,9 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         }
         Action::List => {
             let users = Users::load_or_none(&access.users)?;
-            let lines: Vec<_> =
-                users.names().map(|(name, role)| format!("{:<9} {name}", word(role))).collect();
+            let lines: Vec<_> = users.names().map(|(name, role)| format!("{role:<9} {name}")).collect();
             print(&lines.join("\n"))
         }
-    }
-}
-
-fn word(role: Role) -> &'static str {
-    match role {
-        Role::Operator => "operator",
-        Role::Engineer => "engineer",
     }
 }
 

@@ -231,7 +231,7 @@ fn doing(message: &Message) -> Option<(String, Option<(u64, u64)>)> {
         Message::Step { name, .. } => Some((name.clone(), None)),
         Message::Doing { what } => Some((what.clone(), None)),
         Message::Rows { done, expected } => Some(("rows".to_owned(), Some((*done, *expected)))),
-        Message::Ended { step } => Some((format!("{} {}", step.name, step.outcome.name()), None)),
+        Message::Ended { step } => Some((format!("{} {}", step.name, step.outcome), None)),
         Message::Identified { board } => Some((format!("the board is {}", board.name), None)),
         Message::Begun { .. } | Message::Done | Message::Refused { .. } => None,
     }

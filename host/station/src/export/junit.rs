@@ -33,7 +33,7 @@ fn properties(record: &Record) -> Vec<(&'static str, String)> {
     let run = &record.run;
     let mut list = vec![
         ("verdict", record.conclusion.verdict.to_string()),
-        ("cause", record.conclusion.cause.name().to_owned()),
+        ("cause", record.conclusion.cause.to_string()),
         ("run", run.id.clone()),
         ("product", run.product.clone()),
         ("serial", run.serial.clone()),

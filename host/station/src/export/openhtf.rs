@@ -25,7 +25,7 @@ pub(super) fn of(record: &Record) -> Value {
         "start_time_millis": run.started_ms,
         "end_time_millis": phases.iter().filter_map(|it| it["end_time_millis"].as_i64()).fold(ended_ms, i64::max),
         "outcome": outcome,
-        "outcome_details": [{ "code": ended.cause.name(), "description": ended.headline }],
+        "outcome_details": [{ "code": ended.cause, "description": ended.headline }],
         "marginal": record.marginal,
         "metadata": {
             "test_name": plan.name,
@@ -123,7 +123,7 @@ fn measurement(one: &Measured) -> Value {
     if let Some(range) = range(one) {
         fields.insert("validators".to_owned(), json!([range]));
     }
-    fields.insert("docstring".to_owned(), format!("in {}, blames {}", one.unit, one.blames.name()).into());
+    fields.insert("docstring".to_owned(), format!("in {}, blames {}", one.unit, one.blames).into());
     if let Some(value) = one.value {
         fields.insert("measured_value".to_owned(), value.into());
     }

@@ -29,7 +29,7 @@ const OF_RUN: [Column<Record>; 23] = [
     ("ended_ms", |of| of.ended_ms.to_string()),
     ("seconds", |of| number(of.seconds)),
     ("verdict", |of| of.conclusion.verdict.to_string()),
-    ("cause", |of| of.conclusion.cause.name().to_owned()),
+    ("cause", |of| of.conclusion.cause.to_string()),
     ("exit_code", |of| of.conclusion.exit_code.to_string()),
     ("headline", |of| of.conclusion.headline.clone()),
     ("production", |of| of.production.to_string()),
@@ -41,7 +41,7 @@ const OF_STEP: [Column<StepRecord>; 7] = [
     ("seq", |of| of.seq.to_string()),
     ("attempt", |of| of.attempt.to_string()),
     ("step", |of| of.name.clone()),
-    ("step_outcome", |of| of.outcome.name().to_owned()),
+    ("step_outcome", |of| of.outcome.to_string()),
     ("step_started_ms", |of| of.started_ms.to_string()),
     ("step_ended_ms", |of| of.ended_ms.to_string()),
     ("detail", |of| of.detail.clone()),
@@ -54,8 +54,8 @@ const OF_MEASUREMENT: [Column<Measured>; 7] = [
     ("unit", |of| of.unit.clone()),
     ("low", |of| number(of.low)),
     ("high", |of| number(of.high)),
-    ("blames", |of| of.blames.name().to_owned()),
-    ("outcome", |of| of.outcome.name().to_owned()),
+    ("blames", |of| of.blames.to_string()),
+    ("outcome", |of| of.outcome.to_string()),
 ];
 
 /// A table that is being written.

@@ -3,6 +3,7 @@
 use halfrow::Verdict;
 use halfrow::target::BoardKind;
 use serde::Serialize;
+use strum::{AsRefStr, VariantArray};
 
 use crate::plan::mock::is_mock;
 use crate::said::Said;
@@ -70,9 +71,10 @@ impl Shown {
     }
 }
 
-/// A lane's state, as people see it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// A lane's state, as people see it; in lower case for other programs, and in the style sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, AsRefStr, VariantArray)]
 #[serde(rename_all = "UPPERCASE")]
+#[strum(serialize_all = "lowercase")]
 pub enum Word {
     /// No board.
     Empty,
@@ -107,41 +109,10 @@ impl From<Verdict> for Word {
 }
 
 impl Word {
-    /// All of them.
-    pub const ALL: [Self; 10] = [
-        Self::Empty,
-        Self::Ready,
-        Self::Waiting,
-        Self::Running,
-        Self::Saving,
-        Self::Pass,
-        Self::Fail,
-        Self::Error,
-        Self::Unsaved,
-        Self::Out,
-    ];
-
     /// Whether it is a verdict on the board in the lane, or on the one that was there last.
     #[must_use]
     pub(crate) const fn is_verdict(self) -> bool {
         matches!(self, Self::Pass | Self::Fail | Self::Error)
-    }
-
-    /// Its name for other programs, and in the style sheet.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Empty => "empty",
-            Self::Ready => "ready",
-            Self::Waiting => "waiting",
-            Self::Running => "running",
-            Self::Saving => "saving",
-            Self::Pass => "pass",
-            Self::Fail => "fail",
-            Self::Error => "error",
-            Self::Unsaved => "unsaved",
-            Self::Out => "out",
-        }
     }
 }
 

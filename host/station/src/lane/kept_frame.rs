@@ -8,6 +8,7 @@ use halfrow::files::written_aside::{WriteAsideError, write_aside};
 use halfrow::frames::png;
 use halfrow::model::{BitDepth, Frame, Phase};
 use halfrow::result::Evidence;
+use strum::{Display, EnumString};
 
 /// The most frames that are kept of a try of a step.
 const MOST_FRAMES: usize = 2;
@@ -34,7 +35,8 @@ pub(super) enum NotKept {
 }
 
 /// One of the three views of a kept frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Display, EnumString)]
+#[strum(serialize_all = "lowercase")]
 pub(crate) enum View {
     /// As it went in.
     In,
@@ -42,16 +44,6 @@ pub(crate) enum View {
     Out,
     /// As it should have come out.
     Should,
-}
-
-impl View {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::In => "in",
-            Self::Out => "out",
-            Self::Should => "should",
-        }
-    }
 }
 
 /// Which frame a file holds. A PNG states neither depth nor phase, so its name does.
@@ -76,7 +68,7 @@ impl KeptFrame {
     /// The file's name.
     pub(crate) fn name(&self, view: View) -> String {
         let Self { seq, attempt, index, depth, phase } = self;
-        let (bits, view) = (depth.bits(), view.name());
+        let bits = depth.bits();
         format!("step-{seq}-try-{attempt}-frame-{index}-{bits}-bit-{phase}-{view}{ENDING}")
     }
 
@@ -86,10 +78,9 @@ impl KeptFrame {
         let ["step", seq, "try", attempt, "frame", index, bits, "bit", phase, view] = words[..] else {
             return None;
         };
-        let view = Self::VIEWS.into_iter().find(|known| known.name() == view)?;
         let depth = BitDepth::from_bits(bits.parse().ok()?)?;
         let (seq, attempt, index) = (seq.parse().ok()?, attempt.parse().ok()?, index.parse().ok()?);
-        Some((Self { seq, attempt, index, depth, phase: phase.parse().ok()? }, view))
+        Some((Self { seq, attempt, index, depth, phase: phase.parse().ok()? }, view.parse().ok()?))
     }
 }
 

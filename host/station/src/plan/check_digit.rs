@@ -1,12 +1,12 @@
 //! Check digits of serial numbers.
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
+use strum::{Display, VariantArray};
 
 /// How a serial number is protected against misreading. The check digits are at the end of the number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Display, VariantArray)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum CheckDigit {
     /// It is not.
     None,
@@ -26,21 +26,6 @@ pub enum CheckDigit {
 const CODE_39: &str = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ-. $/+%";
 
 impl CheckDigit {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::None, Self::Mod11, Self::Luhn, Self::Mod97, Self::Mod43];
-
-    /// Its name: stable, lower case.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Mod11 => "mod11",
-            Self::Luhn => "luhn",
-            Self::Mod97 => "mod97",
-            Self::Mod43 => "mod43",
-        }
-    }
-
     /// Whether the check digits of `number` are right.
     #[must_use]
     pub fn holds(self, number: &str) -> bool {
@@ -51,12 +36,6 @@ impl CheckDigit {
             Self::Mod97 => mod_97(number),
             Self::Mod43 => mod_43(number),
         }
-    }
-}
-
-impl fmt::Display for CheckDigit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
     }
 }
 
@@ -160,7 +139,7 @@ mod tests {
 
     #[test]
     fn what_is_too_short_or_too_long_or_no_number_does_not_hold() {
-        for check in CheckDigit::ALL.into_iter().filter(|&check| check != CheckDigit::None) {
+        for check in CheckDigit::VARIANTS.iter().filter(|&&check| check != CheckDigit::None) {
             for number in ["", "0", "1", "X", "é", "-"] {
                 assert!(!check.holds(number), "{check} `{number}`");
             }

@@ -1,10 +1,12 @@
 //! What is measured, and limits on it that say whom they blame.
 
 use serde::{Deserialize, Serialize};
+use strum::{AsRefStr, Display};
 
 /// Who is to blame for a measurement beyond its limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, AsRefStr, Display)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Blame {
     /// The board: FAIL.
     Board,
@@ -12,18 +14,6 @@ pub enum Blame {
     Station,
     /// Nobody: it is recorded, and judges nothing.
     Nobody,
-}
-
-impl Blame {
-    /// Its name: stable, lower case.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Board => "board",
-            Self::Station => "station",
-            Self::Nobody => "nobody",
-        }
-    }
 }
 
 /// What makes a measurement.

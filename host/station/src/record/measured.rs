@@ -3,6 +3,7 @@
 use std::iter;
 
 use serde::{Deserialize, Serialize};
+use strum::{AsRefStr, Display};
 
 use super::RunCause;
 use crate::plan::limits::{Blame, Limit, MEASUREMENTS, Maker, Measurement};
@@ -28,33 +29,20 @@ pub struct Measured {
 }
 
 /// The outcome of a measurement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, AsRefStr, Display)]
+#[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum MeasuredOutcome {
     /// Within its limit.
-    #[serde(rename = "passed")]
     Passed,
     /// Outside its limit.
-    #[serde(rename = "failed")]
     Failed,
     /// It has a limit and no value.
-    #[serde(rename = "unset")]
     Unset,
     /// It has no limit.
     #[serde(rename = "not judged")]
+    #[strum(serialize = "not judged")]
     NotJudged,
-}
-
-impl MeasuredOutcome {
-    /// Its name: stable, lower case.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Failed => "failed",
-            Self::Unset => "unset",
-            Self::NotJudged => "not judged",
-        }
-    }
 }
 
 impl Measured {
@@ -170,7 +158,7 @@ mod tests {
         let limit = Limit { measurement, least: None, most: Some(40.0), blames: Blame::Board };
         let all =
             judged(Maker::Verify, &[("latency.clocks", Some(41.0)), ("verify.seconds", Some(2.0))], &[limit]);
-        let outcomes: Vec<_> = all.iter().map(|one| (one.name.as_str(), one.outcome.name())).collect();
+        let outcomes: Vec<_> = all.iter().map(|one| (one.name.as_str(), one.outcome.as_ref())).collect();
         let expected = [
             ("latency.clocks", "failed"),
             ("latency.microseconds", "not judged"),

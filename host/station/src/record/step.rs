@@ -5,6 +5,7 @@ use halfrow::target::BoardKind;
 use halfrow::verdict::{Cause, StoppedBy};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use strum::{AsRefStr, Display, EnumString};
 
 use super::measured::Measured;
 use crate::exit::Exit;
@@ -90,8 +91,9 @@ pub(crate) fn last_tries(steps: &[StepRecord]) -> impl Iterator<Item = &StepReco
 }
 
 /// The outcome of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, AsRefStr, Display, EnumString)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum StepOutcome {
     /// As it should be.
     Passed,
@@ -103,22 +105,10 @@ pub enum StepOutcome {
     Skipped,
 }
 
-impl StepOutcome {
-    /// Its name: stable, lower case.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Failed => "failed",
-            Self::Error => "error",
-            Self::Skipped => "skipped",
-        }
-    }
-}
-
 /// Who or what caused a result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, AsRefStr, Display)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum RunCause {
     /// PASS.
     None,
@@ -137,20 +127,6 @@ pub enum RunCause {
 }
 
 impl RunCause {
-    /// Its name: stable, lower case.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Board => "board",
-            Self::Link => "link",
-            Self::Station => "station",
-            Self::Operator => "operator",
-            Self::Crash => "crash",
-            Self::Refused => "refused",
-        }
-    }
-
     /// The cause of the judge's result; `code` is that of its finding or error.
     #[must_use]
     pub fn of(cause: Cause, code: &str) -> Self {

@@ -54,7 +54,7 @@ pub(super) fn finish(to: &mut dyn Database, record: &Record, hash: &str) -> Resu
         values![
             ended.verdict,
             ended.exit_code,
-            ended.cause.name(),
+            &ended.cause,
             &ended.headline,
             record.ended_ms,
             hash,
@@ -90,8 +90,7 @@ pub(super) fn counted(to: &mut dyn Database, id: &str) -> Result<(), DatabaseErr
 pub(super) fn parts(to: &mut dyn Database, record: &Record) -> Result<(), DatabaseError> {
     let id = &record.run.id;
     for step in &record.steps {
-        let (seq, attempt) = (step.seq, step.attempt);
-        let outcome = step.outcome.name();
+        let (seq, attempt, outcome) = (step.seq, step.attempt, &step.outcome);
         to.execute(
             sql::ADD_STEP,
             values![id, seq, attempt, &step.name, outcome, step.started_ms, step.ended_ms, &step.detail],
@@ -125,8 +124,8 @@ fn measurements(to: &mut dyn Database, record: &Record) -> Result<(), DatabaseEr
                     &one.unit,
                     one.low,
                     one.high,
-                    one.blames.name(),
-                    one.outcome.name(),
+                    &one.blames,
+                    &one.outcome,
                 ],
             )?;
         }

@@ -4,6 +4,7 @@ use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 use serde::Deserialize;
+use strum::VariantArray as _;
 
 use super::fields::Fields;
 use super::history::{show, unit_address};
@@ -36,8 +37,8 @@ async fn page(
     visit: Visit,
     Fields(asked): Fields<JobFilter>,
 ) -> Result<Response, Trouble> {
-    let chosen = JobState::named(&asked.state);
-    let states = chosen.map_or_else(|| JobState::ALL.to_vec(), |state| vec![state]);
+    let chosen: Option<JobState> = asked.state.parse().ok();
+    let states = chosen.map_or_else(|| JobState::VARIANTS.to_vec(), |state| vec![state]);
     let after = asked.after.clone();
     let found = app
         .look(&visit, move |now| Ok((jobs(now, &states, &after, MOST)?, boards(now)?, waiters(now)?)))
@@ -48,7 +49,7 @@ async fn page(
         (states_to_choose(&visit, chosen))
         @if jobs.is_empty() { p.nothing { (visit.say("jobs.none")) } } @else { (table(&visit, &jobs)) }
         @if let Some(last) = jobs.last().filter(|_| jobs.len() == MOST as usize) {
-            p { a href=(format!("/jobs?state={}&after={}", chosen.map_or("", JobState::as_str), last.id)) { (visit.say("jobs.more")) } }
+            p { a href=(format!("/jobs?state={}&after={}", chosen.map(|state| state.to_string()).unwrap_or_default(), last.id)) { (visit.say("jobs.more")) } }
         }
         h2 { (visit.say("jobs.boards")) }
         @if boards.is_empty() { p.nothing { (visit.say("jobs.no_boards")) } } @else { (shelf(&visit, &boards)) }
@@ -63,9 +64,9 @@ fn states_to_choose(visit: &Visit, chosen: Option<JobState>) -> Markup {
     html! {
         p {
             a href="/jobs" aria-current=[chosen.is_none().then_some("true")] { (visit.say("jobs.all")) }
-            @for state in JobState::ALL {
+            @for &state in JobState::VARIANTS {
                 " · "
-                a href=(format!("/jobs?state={}", state.as_str())) aria-current=[(chosen == Some(state)).then_some("true")] {
+                a href=(format!("/jobs?state={state}")) aria-current=[(chosen == Some(state)).then_some("true")] {
                     (state_word(visit, state))
                 }
             }

@@ -74,7 +74,7 @@ impl<'a> RunEvent<'a> {
             plan: &plan.name,
             version: &plan.version,
             verdict: conclusion.verdict.to_string(),
-            cause: conclusion.cause.name(),
+            cause: conclusion.cause.as_ref(),
             headline: &conclusion.headline,
             started_ms: run.started_ms,
             ended_ms: *ended_ms,

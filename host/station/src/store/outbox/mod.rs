@@ -9,6 +9,7 @@ pub(crate) use unsent::DEAD_SHOWN;
 pub use unsent::{Dead, Unsent};
 
 use serde::Serialize;
+use strum::{AsRefStr, EnumString};
 
 use super::database::{Database, DatabaseError, Row, values};
 use super::{Folder, Store, StoreError, Waiver, statements as sql};
@@ -26,8 +27,9 @@ pub(crate) const LONGEST_WAIT_MS: i64 = 300_000;
 pub const SINK_OF_PLANT: &str = "plant";
 
 /// What an entry is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, AsRefStr, EnumString)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum Kind {
     /// A run that is over.
     Run,
@@ -38,20 +40,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 3] = [Self::Run, Self::Waiver, Self::Audit];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Run => "run",
-            Self::Waiver => "waiver",
-            Self::Audit => "audit",
-        }
-    }
-
     fn named(row: &Row<'_>, place: usize) -> Result<Self, DatabaseError> {
-        let name = row.text(place)?;
-        let found = Self::ALL.into_iter().find(|kind| kind.name() == name);
-        found.ok_or(DatabaseError::Dangling { what: "a kind of entry" })
+        row.text(place)?.parse().map_err(|_| DatabaseError::Dangling { what: "a kind of entry" })
     }
 }
 
@@ -152,9 +142,7 @@ pub(super) fn enter(
     kind: Kind,
     subject: &str,
 ) -> Result<(), DatabaseError> {
-    sinks
-        .iter()
-        .try_for_each(|sink| to.execute(sql::ADD_TO_OUTBOX, values![sink, kind.name(), subject]).map(drop))
+    sinks.iter().try_for_each(|sink| to.execute(sql::ADD_TO_OUTBOX, values![sink, &kind, subject]).map(drop))
 }
 
 impl Store {
@@ -200,7 +188,7 @@ impl Store {
             tried.iter().try_for_each(|(Entry { kind, subject, .. }, tried)| {
                 let (next_ms, dead_ms, said) = match tried {
                     Tried::Done => {
-                        let of = values![now_ms, sink, kind.name(), subject];
+                        let of = values![now_ms, sink, kind, subject];
                         return to.execute(sql::OUTBOX_DONE, of).map(drop);
                     }
                     Tried::Again { next_ms, said } => (*next_ms, None, written(said)),
@@ -210,7 +198,7 @@ impl Store {
                     }
                     Tried::Dead { said } => (now_ms, Some(now_ms), written(said)),
                 };
-                let of = values![next_ms, dead_ms, &said, sink, kind.name(), subject];
+                let of = values![next_ms, dead_ms, &said, sink, kind, subject];
                 to.execute(sql::OUTBOX_FAILED, of).map(drop)
             })
         })
@@ -246,7 +234,7 @@ impl Folder {
     /// Like [`Self::due`].
     pub(crate) fn newest_sent(&self, sink: &str) -> Result<Option<String>, StoreError> {
         self.read("to tell what was sent last", |from| {
-            from.first(sql::OUTBOX_NEWEST_SENT, values![sink, Kind::Run.name()], |row| row.get(0))
+            from.first(sql::OUTBOX_NEWEST_SENT, values![sink, &Kind::Run], |row| row.get(0))
         })
     }
 
@@ -256,7 +244,7 @@ impl Folder {
     /// Like [`Self::due`].
     pub fn at_plant(&self, run: &str) -> Result<Standing, StoreError> {
         let found = self.read("to tell what was sent", |from| {
-            from.first(sql::OUTBOX_ENTRY, values![SINK_OF_PLANT, Kind::Run.name(), run], |row| {
+            from.first(sql::OUTBOX_ENTRY, values![SINK_OF_PLANT, &Kind::Run, run], |row| {
                 let [done_ms, dead_ms] = [row.get::<Option<i64>>(0)?, row.get(1)?];
                 Ok(Standing { is_done: done_ms.is_some(), is_dead: dead_ms.is_some(), said: said(row, 2)? })
             })

@@ -100,7 +100,7 @@ fn enter(
             record.ended_ms,
             ended.verdict,
             ended.exit_code,
-            ended.cause.name(),
+            &ended.cause,
             &ended.headline,
             hash,
             board.map(|board| &board.kind),

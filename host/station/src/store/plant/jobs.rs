@@ -4,6 +4,7 @@
 use clap::ValueEnum;
 use halfrow::Verdict;
 use serde::Serialize;
+use strum::{Display, EnumString, VariantArray};
 
 use super::super::database::{Database, DatabaseError, FromValue, Row, Value, values};
 use super::super::{AgainError, By, Deed, Snapshot, StoreError, retest_policy, statements as sql};
@@ -12,9 +13,10 @@ use super::{Plant, arrived};
 use crate::plan::{Again, Plan};
 use crate::{clock, ids};
 
-/// How it stands with a job.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+/// How it stands with a job; in the order in which a job comes to them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum, Display, EnumString, VariantArray)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum JobState {
     /// No station has it.
     Waiting,
@@ -26,33 +28,11 @@ pub enum JobState {
     Dead,
 }
 
-impl JobState {
-    /// All of them, in the order in which a job comes to them.
-    pub(crate) const ALL: [Self; 4] = [Self::Waiting, Self::Claimed, Self::Done, Self::Dead];
-
-    /// Its name in tables, documents and addresses.
-    #[must_use]
-    pub(crate) const fn as_str(self) -> &'static str {
-        match self {
-            Self::Waiting => "waiting",
-            Self::Claimed => "claimed",
-            Self::Done => "done",
-            Self::Dead => "dead",
-        }
-    }
-
-    /// The state of this name.
-    #[must_use]
-    pub(crate) fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|state| state.as_str() == name)
-    }
-}
-
 impl FromValue for JobState {
     const EXPECTED: &'static str = "waiting, claimed, done or dead";
 
     fn from_value(value: Value<'_>) -> Option<Self> {
-        if let Value::Text(text) = value { Self::named(text) } else { None }
+        if let Value::Text(text) = value { text.parse().ok() } else { None }
     }
 }
 
@@ -316,7 +296,7 @@ fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, Data
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
 pub fn jobs(of: &Snapshot, states: &[JobState], after: &str, most: u32) -> Result<Vec<Job>, StoreError> {
-    let states: Vec<_> = states.iter().map(|state| state.as_str()).collect();
+    let states: Vec<_> = states.iter().map(JobState::to_string).collect();
     of.rows("to tell its jobs", sql::JOBS, values![&states.join(" "), after, most], job)
 }
 

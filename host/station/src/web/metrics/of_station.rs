@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use strum::VariantArray as _;
+
 use super::text::{Label, Metric, Text, counter, gauge, histogram, info};
 use super::{counted, turns};
 use crate::clock;
@@ -77,8 +79,8 @@ pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(
 fn lanes(text: &mut Text, lanes: &[LaneState]) {
     let mut of = text.of(&STATE);
     for lane in lanes {
-        for word in Word::ALL {
-            of.put(&[("lane", &lane.lane), ("state", word.name())], u64::from(lane.state == word));
+        for word in Word::VARIANTS {
+            of.put(&[("lane", &lane.lane), ("state", word.as_ref())], u64::from(lane.state == *word));
         }
     }
     let is_unsaved = |lane: &&LaneState| lane.state == Word::Unsaved && !lane.awaits_plant;

@@ -52,7 +52,7 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
     let shown = state.shown.as_ref().filter(|_| state.state.is_verdict());
     let word = said(visit, state.state);
     html! {
-        article.lane.(state.state.name()).(length(word)) id={ "lane-" (state.lane) } data-lane=(state.lane) aria-labelledby={ "name-" (state.lane) }
+        article.lane.(state.state.as_ref()).(length(word)) id={ "lane-" (state.lane) } data-lane=(state.lane) aria-labelledby={ "name-" (state.lane) }
             data-run=[shown.map(|shown| &shown.run)] data-record=[shown.map(|shown| &shown.record_sha256)] {
             header {
                 h2 id={ "name-" (state.lane) } aria-label=(visit.words.fill("lane.name", &[("lane", &state.lane)])) {

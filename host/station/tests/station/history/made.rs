@@ -291,7 +291,7 @@ pub(crate) fn step(run: &RunHead, seq: u32, name: &str, came: (StepOutcome, RunC
         exit_code,
         started_ms: run.started_ms + 500 * i64::from(seq - 1),
         ended_ms: run.started_ms + 500 * i64::from(seq),
-        detail: format!("{name} \"{}\", <{}>", outcome.name(), cause.name()),
+        detail: format!("{name} \"{outcome}\", <{cause}>"),
         finding: None,
         remedy: None,
         measurements: Vec::new(),

@@ -391,7 +391,7 @@ fn the_page_and_the_schema_tell_what_can_have_a_limit() {
     let settable = MEASUREMENTS.iter().filter(|known| known.name != "frames.samples_differing");
     let mut table = String::new();
     for Measurement { name, unit, made_by, blames, meaning } in settable {
-        let (by, blames) = (serde_json::to_value(made_by).unwrap(), blames.name());
+        let by = serde_json::to_value(made_by).unwrap();
         let by = by.as_str().unwrap();
         table += &format!("| `{name}` | {unit} | {by} | {blames} | {meaning} |\n");
         assert_eq!(limits[name]["description"], format!("{meaning} (blames: {blames})"));

@@ -33,7 +33,7 @@ fn a_sound_board_passes_and_its_record_reads_back() {
         super::bench::sha256sum(&station.store().blobs().path(&stored.record_sha256)),
         stored.record_sha256
     );
-    let steps: Vec<_> = record.steps.iter().map(|step| (step.name.as_str(), step.outcome.name())).collect();
+    let steps: Vec<_> = record.steps.iter().map(|step| (step.name.as_str(), step.outcome.as_ref())).collect();
     assert_eq!(steps, [("identity", "passed"), ("verify", "passed")]);
     assert_eq!(record.plan.text, PLAN);
     assert_eq!(json["run"]["operator"], "weber");

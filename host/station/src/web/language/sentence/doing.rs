@@ -38,13 +38,12 @@ impl Words {
     /// How a step of the plan ended.
     fn ended(&self, what: &str) -> Option<String> {
         let (step, outcome) = what.rsplit_once(' ')?;
-        let known = [
-            (StepOutcome::Passed, self.say("run.passed")),
-            (StepOutcome::Failed, self.say("run.failed")),
-            (StepOutcome::Error, self.say("run.error")),
-            (StepOutcome::Skipped, self.say("run.skipped")),
-        ];
-        let (_, words) = known.into_iter().find(|(known, _)| known.name() == outcome)?;
+        let words = match outcome.parse().ok()? {
+            StepOutcome::Passed => self.say("run.passed"),
+            StepOutcome::Failed => self.say("run.failed"),
+            StepOutcome::Error => self.say("run.error"),
+            StepOutcome::Skipped => self.say("run.skipped"),
+        };
         Some(format!("{step}{}{words}", self.say("told.colon")))
     }
 
