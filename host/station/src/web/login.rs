@@ -114,7 +114,7 @@ pub(super) async fn identified(
             app.audit(visit, "login refused", &peer.to_string(), "").await?;
         }
         // Most likely it was no badge at all.
-        (Ok(None), Claimant::Session(_)) => {}
+        (Ok(None), Claimant::Person(_)) => {}
     }
     known.map_err(|error| Trouble::secret(visit, &error))
 }

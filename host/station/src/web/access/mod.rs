@@ -48,7 +48,8 @@ pub struct Access {
     failures: Mutex<Failures<IpAddr>>,
     /// Failures of machines, on their own so that one with a wrong token behind a proxy locks no operator out.
     refused: Mutex<Failures<IpAddr>>,
-    /// Scans that are no badge, of those who are logged in, by session: other operators may be behind the same proxy.
+    /// Scans that are no badge, of those who are logged in, by person: other operators may be behind the same proxy, and nobody
+    /// begins anew by logging in again.
     scans: Mutex<Failures<String>>,
     machines: Mutex<Machines>,
 }
@@ -67,8 +68,8 @@ enum People {
 pub(super) enum Claimant {
     /// Somebody who is not logged in, by address.
     Stranger(IpAddr),
-    /// Somebody who is logged in, by session: what they scan may be another person's badge.
-    Session(String),
+    /// Somebody who is logged in, by name: what they scan may be another person's badge.
+    Person(String),
 }
 
 /// A machine that asks with a token.
@@ -243,7 +244,7 @@ impl Access {
     pub(super) fn attempt(&self, by: &Claimant) -> Option<Duration> {
         match by {
             Claimant::Stranger(peer) => self.failures.lock().attempt(network(*peer), Instant::now()),
-            Claimant::Session(session) => self.scans.lock().attempt(session.clone(), Instant::now()),
+            Claimant::Person(name) => self.scans.lock().attempt(name.clone(), Instant::now()),
         }
     }
 
@@ -251,7 +252,7 @@ impl Access {
     pub(super) fn succeeded(&self, by: &Claimant) {
         match by {
             Claimant::Stranger(peer) => self.failures.lock().succeeded(&network(*peer)),
-            Claimant::Session(session) => self.scans.lock().succeeded(session),
+            Claimant::Person(name) => self.scans.lock().succeeded(name),
         }
     }
 

@@ -105,10 +105,9 @@ async fn badge(
         return Ok(None);
     }
     let label = app.settings().scanner.label(&scanned.text).unwrap_or(&scanned.text).to_owned();
-    let by = if visit.user.is_some() {
-        Claimant::Session(visit.session.clone())
-    } else {
-        Claimant::Stranger(peer)
+    let by = match &visit.user {
+        Some(user) => Claimant::Person(user.name.clone()),
+        None => Claimant::Stranger(peer),
     };
     let Some(known) = identified(app, visit, by, (label, String::new())).await? else { return Ok(None) };
     let said = visit.words.fill("login.now", &[("name", &known.user.name)]);

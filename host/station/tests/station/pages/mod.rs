@@ -5,6 +5,7 @@ mod browser;
 mod changes;
 mod fuzz;
 mod gone;
+mod guesses;
 pub(crate) mod http;
 mod lanes;
 mod languages;
