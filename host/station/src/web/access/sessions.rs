@@ -13,6 +13,8 @@ use crate::web::visit::User;
 
 /// The most sessions at once.
 const MOST: usize = 1000;
+/// The most of one person, so that nobody logs others out by logging in again and again.
+const MOST_OF_ONE: usize = 50;
 
 /// By how much the file may lag in saying when somebody last did something.
 const SAVED_MS: i64 = 60_000;
@@ -69,14 +71,24 @@ impl Sessions {
         Ok(Self { known: known.collect(), file: Some(path.to_owned()), saved_ms: 0 })
     }
 
-    /// Adds somebody who logged in. If there are too many, whoever has been idle longest is logged out.
+    /// Adds somebody who logged in. If they have too many sessions, the one of theirs that has been idle longest ends; if there are
+    /// too many in all, whoever has been idle longest is logged out.
     pub(super) fn add(&mut self, mark: String, who: Identified, now_ms: i64) {
-        if self.known.len() >= MOST {
-            let idle = self.known.iter().min_by_key(|(_, (_, used))| *used).map(|(mark, _)| mark.clone());
-            idle.map(|mark| self.known.remove(&mark));
-        }
+        self.make_room(MOST_OF_ONE, |of| of.name == who.user.name);
+        self.make_room(MOST, |_| true);
         self.known.insert(mark, (who, now_ms));
         self.save(now_ms);
+    }
+
+    /// Ends those of the sessions of whoever `is_meant` that have been idle longest, until one more makes `most`.
+    fn make_room(&mut self, most: usize, is_meant: impl Fn(&User) -> bool) {
+        let meant = self.known.iter().filter(|(_, (who, _))| is_meant(&who.user));
+        let mut idle: Vec<_> = meant.map(|(mark, (_, used_ms))| (*used_ms, mark.clone())).collect();
+        idle.sort_unstable();
+        let surplus = (idle.len() + 1).saturating_sub(most);
+        for (_, mark) in idle.into_iter().take(surplus) {
+            self.known.remove(&mark);
+        }
     }
 
     /// Whose cookie has this mark, unless they have been idle for `idle`, which is ended by an act and not by a look.
@@ -168,6 +180,34 @@ mod tests {
         let mut again = Sessions::load(&path).unwrap();
         assert_eq!(again.user("s", idle, false, 100_999 + SAVED_MS + 100_000), Some(weber));
         assert_eq!(again.user("s", idle, false, 101_000 + SAVED_MS + 100_000), None);
+    }
+
+    /// docs/station-lanes.md: a person is logged in 50 times at once.
+    #[test]
+    fn whoever_logs_in_again_and_again_logs_nobody_else_out() {
+        let (mut sessions, idle) = (Sessions::default(), Duration::from_secs(3600));
+        let [weber, braun] =
+            [("Weber", Who::Operator), ("Braun", Who::Engineer)].map(|(name, who)| identified(name, who));
+        sessions.add("b".to_owned(), braun.clone(), 0);
+        for number in 0..2_000 {
+            sessions.add(format!("w{number}"), weber.clone(), 1_000 + number);
+            // One that is used.
+            assert_eq!(sessions.user("w7", idle, true, 1_000 + number).is_some(), number >= 7, "{number}");
+        }
+        assert_eq!(sessions.user("b", idle, false, 4_000), Some(braun), "others stay");
+        let is_in = |number: &i64| sessions.user(&format!("w{number}"), idle, false, 4_000).is_some();
+        let left: Vec<_> = (0..2_000).filter(is_in).collect();
+        assert_eq!(left, [7].into_iter().chain(1_951..2_000).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn where_too_many_are_logged_in_whoever_has_been_idle_longest_is_logged_out() {
+        let (mut sessions, idle) = (Sessions::default(), Duration::from_secs(3600));
+        for number in 0..1_001 {
+            sessions.add(format!("s{number}"), identified(&format!("{number}"), Who::Operator), number);
+        }
+        let is_in = |number: i64| sessions.user(&format!("s{number}"), idle, false, 2_000).is_some();
+        assert_eq!([0, 1, 1_000].map(is_in), [false, true, true]);
     }
 
     #[test]
