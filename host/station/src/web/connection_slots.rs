@@ -31,6 +31,8 @@ enum At {
     TellsNews,
     /// It waits for a request.
     Waits,
+    /// It waits for the rest of a form. It takes no login to begin one, and whoever has begun one has been promised nothing.
+    Sends,
 }
 
 /// All connections.
@@ -98,8 +100,9 @@ impl Table {
         self.last
     }
 
-    /// Closes a connection of `network`, or without one of the network with the most connections: the one that has waited longest
-    /// for a request, or else that has sent news for longest. None if there is neither.
+    /// Closes a connection of `network`, or without one of the network with the most connections: the one that has been sending a
+    /// form for longest, or else that has waited longest for a request, or else that has sent news for longest. None if there is
+    /// none of these.
     fn one_gives_way(&mut self, network: Option<IpAddr>) -> Option<()> {
         let mut counts = HashMap::<IpAddr, usize>::new();
         for taken in self.taken.values() {
@@ -147,6 +150,8 @@ impl Drop for Slot {
 /// Goes around every request of a connection, so that its slot knows what it is doing until the end of the answer.
 pub(super) async fn noted(State(slot): State<Arc<Slot>>, request: Request, next: Next) -> Response {
     slot.is_at(At::Answers);
+    let form = Arc::clone(&slot);
+    let request = request.map(|body| Body::new(FormBody { body, slot: form, is_late: false }));
     let busy = Busy(slot);
     let response = next.run(request).await;
     if response.headers().get(CONTENT_TYPE).is_some_and(|kind| kind == "text/event-stream") {
@@ -161,6 +166,49 @@ struct Busy(Arc<Slot>);
 impl Drop for Busy {
     fn drop(&mut self) {
         self.0.is_at(At::Waits);
+    }
+}
+
+/// The body of a request. While it is awaited, nothing is being answered.
+struct FormBody {
+    body: Body,
+    slot: Arc<Slot>,
+    /// Whether it was not all there at once.
+    is_late: bool,
+}
+
+impl HttpBody for FormBody {
+    type Data = Bytes;
+    type Error = axum::Error;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        to: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
+        let frame = Pin::new(&mut self.body).poll_frame(to);
+        // It counts since when it is awaited, however often a part of it comes.
+        if frame.is_pending() && !self.is_late {
+            self.is_late = true;
+            self.slot.is_at(At::Sends);
+        }
+        frame
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.size_hint()
+    }
+}
+
+impl Drop for FormBody {
+    /// It is there, or awaited no more, so that an answer follows.
+    fn drop(&mut self) {
+        if self.is_late {
+            self.slot.is_at(At::Answers);
+        }
     }
 }
 
@@ -240,6 +288,24 @@ mod tests {
         all[8].is_at(At::Waits);
         let mut late = Vec::new();
         for gone in [&[9][..], &[8, 9], &[5, 8, 9], &[4, 5, 8, 9]] {
+            late.push(slots.take(here).unwrap());
+            late.iter().for_each(|slot| slot.is_at(At::Answers));
+            assert_eq!(lost(&all), gone);
+        }
+        assert_eq!(slots.take(here).unwrap_err(), NoSlot::OfOne);
+    }
+
+    #[test]
+    fn whoever_sends_a_form_gives_way_before_whoever_waits_until_the_form_is_there() {
+        let [here, ..] = addresses();
+        let slots = Slots::new(false);
+        let all = taken(&slots, here, 48);
+        all.iter().for_each(|slot| slot.is_at(At::Answers));
+        all[3].is_at(At::Waits);
+        [7, 6, 5].iter().for_each(|number| all[*number].is_at(At::Sends));
+        all[6].is_at(At::Answers);
+        let mut late = Vec::new();
+        for gone in [&[7][..], &[5, 7], &[3, 5, 7]] {
             late.push(slots.take(here).unwrap());
             late.iter().for_each(|slot| slot.is_at(At::Answers));
             assert_eq!(lost(&all), gone);

@@ -170,21 +170,52 @@ async fn connection(stream: TcpStream, router: Router, slot: Arc<Slot>) {
     builder.timer(TokioTimer::new()).header_read_timeout(HEAD).max_header_size(MOST_HEAD);
     let served =
         builder.serve_connection(TokioIo::new(WriteTimeout::new(stream)), TowerToHyperService::new(router));
-    match select(pin!(served), pin!(slot.is_lost())).await {
-        Either::Left((Err(error), _)) => tracing::debug!("a connection ended: {error}"),
-        Either::Left((Ok(()), _)) => {}
-        Either::Right(_) => tracing::debug!("a connection gave way to another one"),
+    // First whether it is to give way: else an act that has just arrived would be begun, and its answer cut off.
+    match select(pin!(slot.is_lost()), pin!(served)).await {
+        Either::Left(_) => tracing::debug!("a connection gave way to another one"),
+        Either::Right((Err(error), _)) => tracing::debug!("a connection ended: {error}"),
+        Either::Right((Ok(()), _)) => {}
     }
 }
 
 #[cfg(test)]
 mod tests {
     use std::fs::File;
+    use std::io::Write as _;
     use std::os::fd::OwnedFd;
+    use std::sync::atomic::{AtomicBool, Ordering};
     use std::time::Instant;
+
+    use axum::routing::get;
 
     use super::*;
     use crate::web::request_guard::tests::station;
+
+    #[test]
+    fn a_connection_that_is_to_give_way_begins_nothing_more() {
+        let runtime = Builder::new_current_thread().enable_all().build().unwrap();
+        let begun = |gives_way: bool| async move {
+            let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+            let mut client = std::net::TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+            let (stream, peer) = listener.accept().await.unwrap();
+            client.write_all(b"GET / HTTP/1.1\r\nhost: here\r\nconnection: close\r\n\r\n").unwrap();
+            stream.readable().await.unwrap();
+            let (slots, asked) = (Slots::new(false), Arc::new(AtomicBool::new(false)));
+            let slot = Arc::new(slots.take(peer.ip()).unwrap());
+            // docs/station-lanes.md: one address holds at most 48.
+            let _others: Vec<_> =
+                (0..if gives_way { 48 } else { 47 }).map(|_| slots.take(peer.ip())).collect();
+            let noted = Arc::clone(&asked);
+            let answer = move || {
+                noted.store(true, Ordering::Relaxed);
+                std::future::ready("")
+            };
+            connection(stream, Router::new().route("/", get(answer)), slot).await;
+            asked.load(Ordering::Relaxed)
+        };
+        assert!(runtime.block_on(begun(false)), "the control");
+        assert!(!runtime.block_on(begun(true)));
+    }
 
     #[test]
     fn pages_that_cannot_be_served_are_not_waited_for() {

@@ -1,5 +1,8 @@
 //! How many connections there are, and who has them.
 
+use std::io::{Read as _, Write as _};
+
+use super::http::connected;
 use crate::pages::station::Station;
 
 /// A program on the station's own computer that opens connection after connection, and closes none.
@@ -15,5 +18,35 @@ fn whoever_has_taken_many_connections_keeps_nobody_from_the_pages() {
             streams.push(news);
             assert_eq!(here.get("/").send().status, 200, "behind {} streams of news", streams.len());
         }
+    }
+}
+
+/// Whoever has half a form has been promised nothing. It takes no login to begin one.
+#[test]
+fn forms_that_are_begun_keep_nobody_from_the_pages_and_are_answered_where_there_is_room() {
+    for (station, has_proxy) in [(Station::private(1), false), (Station::public(1), true)] {
+        let serving = station.serve();
+        let here = if has_proxy { serving.operator() } else { serving.here() };
+        let form = here.post("/language", &[("language", "de")]).text();
+        let (first, rest) = form.split_at(form.len() - 9);
+        let begun = || {
+            let mut stream = connected(serving.port);
+            stream.write_all(first.as_bytes()).unwrap();
+            stream
+        };
+        let mut slow = begun();
+        assert_eq!(here.get("/").send().status, 200);
+        slow.write_all(rest.as_bytes()).unwrap();
+        let mut answer = String::new();
+        slow.read_to_string(&mut answer).unwrap();
+        assert!(answer.contains(" 303 "), "{answer}");
+        let mut news = here.get("/live").lines();
+        assert!(news.next().unwrap().contains("200"));
+        let mut streams = Vec::new();
+        for _ in 0..100 {
+            streams.push(begun());
+            assert_eq!(here.get("/").send().status, 200, "behind {} forms", streams.len());
+        }
+        assert!(news.any(|line| line.starts_with("event: beat")), "news go on");
     }
 }
