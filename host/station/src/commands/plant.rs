@@ -119,7 +119,7 @@ fn progress(done: &'static str) -> impl FnMut(u64) {
 fn serve(settings: Settings) -> Result<Exit, Failure> {
     let address = plant(&settings)?.address()?;
     let signal = Signal::heed()?;
-    std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
+    crate::store::Folder::new(&settings.data).make().map_err(Failure::call)?;
     let everybody = User { name: String::new(), who: Who::Reader };
     let access = Access::of(&settings, everybody)?;
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;

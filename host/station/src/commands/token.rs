@@ -49,7 +49,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let file = file.ok_or_else(|| Failure::call(NoTokens))?;
     match what {
         Action::Add { name, scope } => {
-            std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
+            crate::store::Folder::new(&settings.data).make().map_err(Failure::call)?;
             let name = name.trim();
             let shown = print(&add_token(&settings, file, name, *scope)?);
             if shown.is_err() {

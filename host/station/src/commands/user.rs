@@ -57,7 +57,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let access = settings.access.as_ref().ok_or_else(|| Failure::call(NoUsers))?;
     match what {
         Action::Add { name, role } => {
-            std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
+            crate::store::Folder::new(&settings.data).make().map_err(Failure::call)?;
             let badge = asked("badge")?;
             let password = if *role == Role::Engineer { asked("password")? } else { String::new() };
             add_user(&settings, &access.users, (name.trim(), *role), &badge, &password)?;

@@ -12,6 +12,7 @@ use super::{BundleError, FetchError, PublicKey, Signed, Statement};
 use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::record::is_hash;
+use crate::store::make_folder;
 
 /// A folder of plans, each by its hash, and of what holds for each name.
 #[derive(Clone, Debug)]
@@ -113,7 +114,7 @@ impl KeptPlans {
     ) -> Result<(), FetchError> {
         let place = self.folder.join(&statement.sha256);
         let refused = |source| BundleError::Folder { path: place.clone(), source };
-        fs::create_dir_all(&self.folder).map_err(refused)?;
+        make_folder(&self.folder).map_err(refused)?;
         let aside = AsideFolder::new(&place).map_err(refused)?;
         fill(aside.path())?;
         aside.replace(|_| None).map_err(|misplaced| match misplaced {

@@ -1,9 +1,9 @@
 //! The folder of a station, and what is in it.
 
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, DirBuilder, File, TryLockError};
 use std::io;
 use std::os::unix::ffi::OsStrExt as _;
-use std::os::unix::fs::OpenOptionsExt as _;
+use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -28,6 +28,12 @@ pub(crate) const ASIDE: &str = ".partial";
 /// The name of the file that is locked by the program that writes.
 pub(crate) const LOCK: &str = "station.lock";
 
+/// Makes the folder `path`, of a station or in one, and those above it, where they do not exist. Whatever the umask, nobody else may
+/// put another database, key or plan there.
+pub(crate) fn make_folder(path: &Path) -> io::Result<()> {
+    DirBuilder::new().recursive(true).mode(0o750).create(path)
+}
+
 /// The folder of a station.
 #[derive(Clone, Debug)]
 pub struct Folder(pub(super) PathBuf);
@@ -49,6 +55,11 @@ impl Folder {
     #[must_use]
     pub fn database(&self) -> PathBuf {
         self.0.join("station.db")
+    }
+
+    /// Makes it, where it does not exist.
+    pub(crate) fn make(&self) -> Result<(), StoreError> {
+        make_folder(&self.0).map_err(|source| self.refused(source))
     }
 
     /// Refuses a folder whose path is not UTF-8.

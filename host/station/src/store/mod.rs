@@ -35,8 +35,7 @@ mod table;
 mod waivers;
 
 use std::collections::BTreeMap;
-use std::fs::{DirBuilder, File};
-use std::os::unix::fs::DirBuilderExt as _;
+use std::fs::File;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -49,7 +48,7 @@ pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
 pub use folder::Folder;
-pub(crate) use folder::{ASIDE, LOCK};
+pub(crate) use folder::{ASIDE, LOCK, make_folder};
 use generation::{Log, Opened};
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub(crate) use outbox::{Backlog, DEAD_SHOWN, FIRST_WAIT_MS, LONGEST_WAIT_MS};
@@ -140,9 +139,7 @@ impl Store {
         folder.refuse_unfinished_restore()?;
         folder.refuse_other_users()?;
         for place in [folder.evidence(), folder.spools()] {
-            // Whatever the umask, nobody else may put another database there.
-            let made = DirBuilder::new().recursive(true).mode(0o750).create(place);
-            made.map_err(|source| folder.refused(source))?;
+            make_folder(&place).map_err(|source| folder.refused(source))?;
         }
         let lock = folder.lock()?;
         // A restore may have begun meanwhile.

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::net::TcpListener;
+use std::os::unix::fs::PermissionsExt as _;
 
 use super::plans::Published;
 
@@ -52,4 +53,14 @@ fn a_station_starts_with_what_it_has_when_the_plant_does_not_answer() {
         started.code == Some(0) && started.complained.contains("the plans stay as they are"),
         "{started:?}"
     );
+}
+
+/// By the umask others could put a plan or a database there.
+#[test]
+fn a_folder_that_is_made_for_plans_is_closed_to_others() {
+    let made = Published::new();
+    assert_eq!(made.publish("engel.key").code, Some(0));
+    assert_eq!(made.fetch().code, Some(0));
+    let mode = fs::metadata(made.path("data")).unwrap().permissions().mode() & 0o777;
+    assert_eq!(mode, 0o750, "{mode:o}");
 }
