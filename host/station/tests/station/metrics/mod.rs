@@ -2,7 +2,7 @@
 
 mod counts;
 mod figures;
-mod of_plant;
+pub(crate) mod of_plant;
 mod prometheus;
 mod rules;
 pub(crate) mod text;

@@ -116,7 +116,7 @@ fn people_and_machines_look_at_a_plant_that_others_can_reach() {
 }
 
 /// The block of docs/plant.md in this language that has `what` in it.
-fn block(language: &str, what: &str) -> &'static str {
+pub(crate) fn block(language: &str, what: &str) -> &'static str {
     let blocks = include_str!("../../../../../docs/plant.md").split("```");
     let mut of_language = blocks.filter_map(|block| block.strip_prefix(language));
     of_language.find(|block| block.contains(what)).unwrap()
@@ -144,8 +144,8 @@ fn the_pages_work_with_a_role_that_only_looks_and_no_machine_is_let_in_without_t
     let server = Server::prepared();
     let (_made, _) = send(history(), server.address());
     // What psql sends for it.
-    let grants =
-        block("sql", "GRANT").replace("\\password reader", "ALTER ROLE reader PASSWORD 'open sesame';");
+    let grants = block("sql", "GRANT INSERT ON audit")
+        .replace("\\password reader", "ALTER ROLE reader PASSWORD 'open sesame';");
     let of_audit = "GRANT INSERT ON audit TO reader;\n";
     assert!(grants.contains(of_audit), "{grants}");
     let grant = |text: &str| server.client("plant").batch_execute(text).unwrap();

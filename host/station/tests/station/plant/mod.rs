@@ -13,6 +13,7 @@ mod plans;
 mod plans_kept;
 mod put_back;
 mod refused;
+mod rights;
 pub(crate) mod sent;
 pub(crate) mod server;
 mod silent;

@@ -3,6 +3,7 @@
 use halfrow_station::outbox::{PlantSink, Round, Standing, round};
 use halfrow_station::store::{Introduction, Plant, PlantAddress, SINK_OF_PLANT, SharedStore, Store};
 
+use super::rights::as_station;
 use super::server::Server;
 use super::tables::is_as;
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
@@ -51,15 +52,12 @@ pub(super) fn forget(made: &Made) {
 #[test]
 fn all_that_a_station_keeps_comes_to_the_plant_once() {
     let server = Server::prepared();
-    // A role with the rights that a station's role needs according to docs/plant.md.
-    let role = "REVOKE USAGE ON SCHEMA public FROM PUBLIC; CREATE ROLE station LOGIN; \
-                GRANT SELECT, INSERT, UPDATE, DELETE ON ALL TABLES IN SCHEMA public TO station";
-    server.client("plant").batch_execute(role).unwrap();
-    let url = server.url().replace("postgres@", "station@");
-    let address = PlantAddress::new(&url, None, None).unwrap();
+    let address = PlantAddress::new(&as_station(&server), None, None).unwrap();
+    let does = |text: &str| server.client("plant").batch_execute(text).unwrap();
+    does("REVOKE USAGE ON SCHEMA public FROM PUBLIC, station");
     let shut = anyhow::Error::from(Plant::connect(&address).unwrap_err());
     assert!(format!("{shut:#}").contains("grant it USAGE on the schema"), "{shut:#}");
-    server.client("plant").batch_execute("GRANT USAGE ON SCHEMA public TO station").unwrap();
+    does("GRANT USAGE ON SCHEMA public TO station");
     let (made, all) = send(history(), address);
     // Seven runs, a waiver with its line in the audit, and a rebinding.
     assert_eq!(all, Round { sent: 10, failed: 0, is_away: false });
