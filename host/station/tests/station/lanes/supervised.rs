@@ -62,10 +62,19 @@ fn job(folder: &Path) -> Job {
 
 /// The end of a lane that runs this script, with a plan of this text.
 fn end_of_script(lane: &str, text: String, silence: Duration, attendant: &mut dyn Attendant) -> End {
-    let folder = folder();
-    let lane = script(folder.path(), "lane", lane);
-    let job = Job { text, memory_mib: 64, ..job(folder.path()) };
-    supervise(&lane, &job, folder.path(), Patience { silence, whole: HANG, tries: 2 }, attendant).end
+    end_in(folder().path(), (lane, text), Patience { silence, whole: HANG, tries: 2 }, attendant)
+}
+
+/// The same in this folder, within this patience.
+fn end_in(
+    folder: &Path,
+    (lane, text): (&str, String),
+    patience: Patience,
+    attendant: &mut dyn Attendant,
+) -> End {
+    let lane = script(folder, "lane", lane);
+    let job = Job { text, memory_mib: 64, ..job(folder) };
+    supervise(&lane, &job, folder, patience, attendant).end
 }
 
 #[test]
@@ -83,6 +92,40 @@ fn a_lane_that_closes_its_output_and_does_not_end_is_killed_for_that() {
     let end = end_of_script(&lane, String::new(), HANG, &mut Slow(Duration::ZERO));
     let End::Killed(why) = end else { panic!("{end:?}") };
     assert_eq!((why.code.as_str(), &why.parameters["seconds"]), ("lane-deaf", &10.0.into()));
+}
+
+/// Such as one whose step goes round in a circle: it would keep its board for ever.
+#[test]
+fn a_lane_that_takes_too_long_is_killed_however_much_it_tells() {
+    let doing = r#"printf '{"told":"doing","what":"frames"}\n'; sleep 0.1"#;
+    let patience = Patience { silence: HANG, whole: Duration::from_secs(1), tries: 2 };
+    let ends = |rest: &str, patience| {
+        let lane = format!("printf '{}'\n{rest}\nprintf '{TWO}'\nread -r more\n", begun());
+        end_in(folder().path(), (&lane, String::new()), patience, &mut Slow(Duration::ZERO))
+    };
+    let end = ends(&format!("while :; do {doing}; done"), patience);
+    let End::Killed(why) = end else { panic!("{end:?}") };
+    assert_eq!((why.code.as_str(), &why.parameters["seconds"]), ("lane-late", &1.0.into()));
+    // The control: a lane that takes as long, and may.
+    let for_long = format!("for _ in 1 2 3 4 5 6 7 8 9 10 11 12; do {doing}; done");
+    assert_eq!(ends(&for_long, Patience { whole: HANG, ..patience }), End::Done);
+}
+
+/// docs/station-plans.md: no file of a run grows beyond 64 MiB. It would fill the station's disk, where verdicts are saved.
+#[test]
+fn what_a_lane_tells_is_written_down_up_to_64_mib() {
+    let place = folder();
+    let long =
+        "printf '{\"told\":\"doing\",\"what\":\"'; head -c 30000000 /dev/zero | tr '\\0' x; printf '\"}\\n'";
+    let lane = format!("printf '{}'\n{long}\n{long}\n{long}\nprintf '{TWO}'\nread -r more\n", begun());
+    let patience = Patience { silence: HANG, whole: HANG, tries: 2 };
+    let end = end_in(place.path(), (&lane, String::new()), patience, &mut Slow(Duration::ZERO));
+    assert_eq!(end, End::Done);
+    let kept = fs::read_to_string(place.path().join("events.jsonl")).unwrap();
+    let long: Vec<_> = kept.lines().map(|line| line.len() > 30_000_000).collect();
+    assert!(kept.len() <= 64 << 20, "{} bytes", kept.len());
+    // What is short has room all the same.
+    assert_eq!(long, [false, true, true, false, false]);
 }
 
 /// It would fill the station's memory.
