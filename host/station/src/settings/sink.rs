@@ -138,6 +138,19 @@ impl SinkText {
             ("ca", at(&self.ca)),
             ("proxy", at(&self.proxy)),
         ];
+        // Every key by name: a new one, which the compiler names here, is among those above or says where a sink is.
+        let Self {
+            name: _,
+            folder: _,
+            post: _,
+            mqtt: _,
+            format: _,
+            token_file: _,
+            user: _,
+            password_file: _,
+            ca: _,
+            proxy: _,
+        } = self;
         given.into_iter().find_map(|(key, at)| Some((key, at?)).filter(|(key, _)| !used.contains(key)))
     }
 }
