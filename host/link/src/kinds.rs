@@ -14,6 +14,19 @@ pub struct Form {
     pub summary: &'static str,
 }
 
+/// Where a board is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In this program, or in a file.
+    Program,
+    /// Behind a USB chip that is plugged into this computer.
+    Chip,
+    /// Behind a serial port of this computer.
+    Port,
+    /// Behind a port of a computer, this one or another, as `HOST:PORT`.
+    Host,
+}
+
 /// A kind of board.
 #[derive(Debug)]
 pub struct Kind {
@@ -23,6 +36,8 @@ pub struct Kind {
     pub forms: &'static [Form],
     /// What is at the other end, as far as the kind tells.
     pub board: BoardKind,
+    /// Where it is.
+    pub place: Place,
     /// Checks that a target's address and options suit the kind, without opening anything.
     pub(crate) check: fn(&Target) -> Result<(), OpenError>,
     /// Opens the link without sending anything over it.
@@ -45,6 +60,7 @@ pub static KINDS: [Kind; 6] = [
             summary: "a board in this program; mock,KEY=VALUE sets its build, its wire and its fault",
         }],
         board: BoardKind::Mock,
+        place: Place::Program,
         check: |target| open_mock(target).map(drop),
         open: open_mock,
         writes: None,
@@ -62,6 +78,7 @@ pub static KINDS: [Kind; 6] = [
             Form { target: "sim:fifo", summary: "the same behind the pins of its FT2232H" },
         ],
         board: BoardKind::Sim,
+        place: Place::Program,
         check: check_simulated,
         open: open_simulated,
         writes: Some(TRACE),
@@ -77,6 +94,7 @@ pub static KINDS: [Kind; 6] = [
             Form { target: "usb:SERIAL", summary: "the one with this serial number, when there are several" },
         ],
         board: BoardKind::Hardware,
+        place: Place::Chip,
         check: UsbLink::check,
         open: |target| Ok(Box::new(UsbLink::open(target)?)),
         writes: None,
@@ -89,6 +107,7 @@ pub static KINDS: [Kind; 6] = [
             summary: "the board behind a serial port; board=NAME sets the port as that board needs it",
         }],
         board: BoardKind::Hardware,
+        place: Place::Port,
         check: SerialLink::check,
         open: |target| Ok(Box::new(SerialLink::open(target)?)),
         writes: None,
@@ -101,6 +120,7 @@ pub static KINDS: [Kind; 6] = [
             summary: "the board that another computer exports as raw bytes",
         }],
         board: BoardKind::Hardware,
+        place: Place::Host,
         check: TcpLink::check,
         open: |target| Ok(Box::new(TcpLink::open(target)?)),
         writes: None,
@@ -110,6 +130,7 @@ pub static KINDS: [Kind; 6] = [
         name: "replay",
         forms: &[Form { target: "replay:FILE", summary: "the board that answered when FILE was recorded" }],
         board: BoardKind::Replay,
+        place: Place::Program,
         check: check_replay,
         open: open_replay,
         writes: None,
@@ -135,6 +156,12 @@ pub fn of(target: &Target) -> Option<&'static Kind> {
 #[must_use]
 pub fn board_of(target: &Target) -> BoardKind {
     of(target).map_or(BoardKind::Hardware, |kind| kind.board)
+}
+
+/// Where the board of `target` is, if its kind is known here.
+#[must_use]
+pub fn place_of(target: &Target) -> Option<Place> {
+    of(target).map(|kind| kind.place)
 }
 
 /// Every way to write a target of any kind.

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use halfrow::link::kinds::{self, Place};
 use halfrow::target::Target;
 
 /// Where Linux lists USB devices.
@@ -48,10 +49,11 @@ enum Plug<'a> {
 
 /// What is plugged in for `board`; none if nothing is, as for `tcp:` or `mock`.
 fn plug(board: &Target) -> Option<Plug<'_>> {
-    match (board.kind.as_str(), board.address.as_deref()?) {
-        ("serial", path) => Some(Plug::Port(path)),
-        ("usb", name) => Some(Plug::Chip(name)),
-        _ => None,
+    let address = board.address.as_deref()?;
+    match kinds::place_of(board)? {
+        Place::Port => Some(Plug::Port(address)),
+        Place::Chip => Some(Plug::Chip(address)),
+        Place::Host | Place::Program => None,
     }
 }
 
@@ -76,13 +78,16 @@ pub(crate) fn is_pluggable(board: &Target) -> bool {
 /// unless the name says at which channel, and `ports` says which serial ports are of that chip, too. Two ports of a chip may
 /// have a board each.
 pub(crate) fn is_same(one: &Target, other: &Target, devices: &Path, ports: &Path) -> bool {
-    match (one.kind.as_str(), other.kind.as_str()) {
-        ("usb", "serial") => interface_of(other, ports).is_some_and(|(chip, interface)| {
-            Some(chip) == place(one, devices) && channel(one).is_none_or(|channel| channel == interface)
-        }),
-        ("serial", "usb") => is_same(other, one, devices, ports),
-        (kind, of_other) => {
-            kind == of_other && place(one, devices).is_some_and(|one| Some(one) == place(other, devices))
+    match (kinds::place_of(one), kinds::place_of(other)) {
+        (Some(Place::Chip), Some(Place::Port)) => {
+            interface_of(other, ports).is_some_and(|(chip, interface)| {
+                Some(chip) == place(one, devices) && channel(one).is_none_or(|channel| channel == interface)
+            })
+        }
+        (Some(Place::Port), Some(Place::Chip)) => is_same(other, one, devices, ports),
+        _ => {
+            one.kind == other.kind
+                && place(one, devices).is_some_and(|one| Some(one) == place(other, devices))
         }
     }
 }
@@ -90,15 +95,15 @@ pub(crate) fn is_same(one: &Target, other: &Target, devices: &Path, ports: &Path
 /// The place of a board that has one. Several names of a device that is plugged in lead to the same place.
 fn place(board: &Target, devices: &Path) -> Option<PathBuf> {
     let address = board.address.as_deref()?;
-    let found = match board.kind.as_str() {
-        "serial" => fs::canonicalize(address).ok(),
-        "usb" => {
+    let found = match kinds::place_of(board) {
+        Some(Place::Port) => fs::canonicalize(address).ok(),
+        Some(Place::Chip) => {
             let chip = chips(devices).into_iter().find(|chip| chip.serial.as_deref() == Some(address));
             chip.map(|chip| chip.place.into())
         }
         // Hosts are the same in either case (RFC 4343).
-        "tcp" => Some(address.to_ascii_lowercase().into()),
-        _ => None,
+        Some(Place::Host) => Some(address.to_ascii_lowercase().into()),
+        Some(Place::Program) | None => None,
     };
     Some(found.unwrap_or_else(|| address.into()))
 }

@@ -7,7 +7,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
-use halfrow::link::{self, kinds};
+use halfrow::link;
+use halfrow::link::kinds::{self, Place};
 use halfrow::target::Target;
 use rand::{RngExt as _, rng};
 use serde_json::json;
@@ -220,10 +221,13 @@ impl Share {
 
 /// Whether every computer has a place of this name.
 fn is_own(board: &Target) -> bool {
-    match (board.kind.as_str(), &board.address) {
-        ("usb" | "serial", _) => true,
-        ("tcp", Some(address)) => address.rsplit_once(':').is_some_and(|(host, _)| is_near(host)),
-        _ => false,
+    match kinds::place_of(board) {
+        Some(Place::Chip | Place::Port) => true,
+        Some(Place::Host) => {
+            let at = board.address.as_ref().and_then(|address| address.rsplit_once(':'));
+            at.is_some_and(|(host, _)| is_near(host))
+        }
+        Some(Place::Program) | None => false,
     }
 }
 
