@@ -45,6 +45,9 @@ fn properties(record: &Record) -> Vec<(&'static str, String)> {
         ("board.target", run.target.clone()),
         ("halfrow.version", record.program.clone()),
     ];
+    if !run.variant.is_empty() {
+        list.push(("variant", run.variant.clone()));
+    }
     list.extend(record.not_exercised().iter().map(|of_step| ("not_exercised", in_one_line(of_step))));
     if let Some(board) = &record.board {
         list.push(("board.kind", board.kind.clone()));

@@ -123,3 +123,37 @@ pub fn written(record: &Record, bytes: Vec<u8>, format: Format) -> Result<Vec<u8
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::BoardSeen;
+    use crate::record::tests::pass;
+
+    /// Whoever has only the export must be able to find the board, the run, and what judged it.
+    #[test]
+    fn every_format_says_which_board_it_was_and_what_judged_it() {
+        let text = |word: &str| format!("the {word}");
+        let mut record = Record { program: text("program"), ..pass() };
+        let device = Some(text("device"));
+        record.board =
+            Some(BoardSeen { kind: text("kind"), name: text("name"), device, build: text("build") });
+        (record.run.variant, record.run.product, record.run.serial) =
+            (text("variant"), text("product"), text("serial"));
+        (record.run.station, record.run.lane, record.run.operator) =
+            (text("station"), text("lane"), text("operator"));
+        (record.run.target, record.run.id) = (text("target"), text("run"));
+        (record.plan.name, record.plan.version, record.plan.sha256) =
+            (text("plan"), text("version"), text("hash"));
+        for format in [Format::Junit, Format::Csv, Format::OpenHtf] {
+            let bytes = written(&record, Vec::new(), format).unwrap();
+            let said = String::from_utf8(bytes).unwrap();
+            let is_missing = |word: &&str| !said.contains(&text(word));
+            let words = [
+                "run", "product", "serial", "variant", "plan", "version", "hash", "station", "lane",
+                "operator", "target", "kind", "device", "build", "program",
+            ];
+            assert_eq!(words.into_iter().filter(is_missing).collect::<Vec<_>>(), [""; 0], "{format:?}");
+        }
+    }
+}

@@ -27,19 +27,7 @@ pub(super) fn of(record: &Record) -> Value {
         "outcome": outcome,
         "outcome_details": [{ "code": ended.cause, "description": ended.headline }],
         "marginal": record.marginal,
-        "metadata": {
-            "test_name": plan.name,
-            "test_version": plan.version,
-            "operator_name": run.operator,
-            "run": run.id,
-            "product": run.product,
-            "lane": run.lane,
-            "plan_sha256": plan.sha256,
-            "board_target": run.target,
-            "board_kind": record.board.as_ref().map(|board| &board.kind),
-            "production": record.production,
-            "config": {},
-        },
+        "metadata": metadata(record),
         "phases": phases,
         "subtests": [],
         "branches": [],
@@ -48,6 +36,28 @@ pub(super) fn of(record: &Record) -> Value {
         "log_records": [],
         "station_id": run.station,
         "code_info": code_info("halfrow-station", &plan.text),
+    })
+}
+
+/// What OpenHTF has no member for.
+fn metadata(record: &Record) -> Value {
+    let Record { run, plan, board, .. } = record;
+    json!({
+        "test_name": plan.name,
+        "test_version": plan.version,
+        "operator_name": run.operator,
+        "run": run.id,
+        "product": run.product,
+        "variant": run.variant,
+        "lane": run.lane,
+        "plan_sha256": plan.sha256,
+        "board_target": run.target,
+        "board_kind": board.as_ref().map(|board| &board.kind),
+        "board_device": board.as_ref().and_then(|board| board.device.as_ref()),
+        "board_build": board.as_ref().map(|board| &board.build),
+        "program": record.program,
+        "production": record.production,
+        "config": {},
     })
 }
 

@@ -58,6 +58,9 @@ const OF_MEASUREMENT: [Column<Measured>; 7] = [
     ("outcome", |of| of.outcome.to_string()),
 ];
 
+/// Further ones of the run, at the end: whoever reads by place finds the others where they were.
+const FURTHER: [Column<Record>; 1] = [("program", |of| of.program.clone())];
+
 /// A table that is being written.
 #[derive(Debug)]
 pub struct Table<W: Write>(W);
@@ -70,7 +73,7 @@ impl<W: Write> Table<W> {
     pub fn begin(to: W) -> Result<Self, ExportError> {
         let mut table = Self(to);
         let (run, step, measured) = (OF_RUN.map(name), OF_STEP.map(name), OF_MEASUREMENT.map(name));
-        table.line(run.into_iter().chain(step).chain(measured))?;
+        table.line(run.into_iter().chain(step).chain(measured).chain(FURTHER.map(name)))?;
         Ok(table)
     }
 
@@ -84,16 +87,16 @@ impl<W: Write> Table<W> {
     /// # Errors
     /// [`ExportError::Write`]
     pub fn add(&mut self, record: &Record) -> Result<(), ExportError> {
-        let run = OF_RUN.map(|(_, cell)| cell(record));
+        let run = (&OF_RUN.map(|(_, cell)| cell(record))[..], &FURTHER.map(|(_, cell)| cell(record))[..]);
         for step in &record.steps {
-            self.lines(&run, &OF_STEP.map(|(_, cell)| cell(step)), &step.measurements)?;
+            self.lines(run, &OF_STEP.map(|(_, cell)| cell(step)), &step.measurements)?;
         }
         // Those of the run as a whole have the step 0, as in the store.
         let whole: [&str; OF_STEP.len()] = ["0", "1", "run", "", "", "", ""];
         if record.measurements.is_empty() && !record.steps.is_empty() {
             return Ok(());
         }
-        self.lines(&run, &whole.map(str::to_owned), &record.measurements)
+        self.lines(run, &whole.map(str::to_owned), &record.measurements)
     }
 
     /// Returns what it was written to.
@@ -101,9 +104,14 @@ impl<W: Write> Table<W> {
         self.0
     }
 
-    fn lines(&mut self, run: &[String], step: &[String], measured: &[Measured]) -> Result<(), ExportError> {
+    fn lines(
+        &mut self,
+        (run, further): (&[String], &[String]),
+        step: &[String],
+        measured: &[Measured],
+    ) -> Result<(), ExportError> {
         let mut line = |measurement: &[String]| {
-            let cells = run.iter().chain(step).chain(measurement);
+            let cells = run.iter().chain(step).chain(measurement).chain(further);
             self.line(cells.map(String::as_str))
         };
         if measured.is_empty() {

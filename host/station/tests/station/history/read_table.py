@@ -44,6 +44,7 @@ for record in records.values():
             for name in ["verdict", "cause", "headline"]:
                 assert row[name] == ended[name], (name, row)
             assert int(row["exit_code"]) == ended["exit_code"]
+            assert row["program"] == record["program"], row
             assert [row["production"], row["marginal"]] == [str(record[n]).lower() for n in ["production", "marginal"]]
             assert [int(row["seq"]), int(row["attempt"])] == [seq, attempt], row
             if step:
