@@ -24,10 +24,11 @@ pub(crate) struct Defects {
 
 impl Defects {
     /// What is wrong with a board that has `fault`.
+    #[expect(clippy::too_many_lines, reason = "one arm a fault")]
     pub(crate) fn of(fault: Option<BoardFault>) -> Self {
         let Some(fault) = fault else { return Self::default() };
-        let mut defects = Self { claims: wrong_claims(fault), ..Self::default() };
-        let Self { core, tables, player, burst, .. } = &mut defects;
+        let mut defects = Self::default();
+        let Self { core, tables, player, burst, claims } = &mut defects;
         match fault {
             Fault::StuckData { bit, value } => core.data_lines = StuckBits::one(bit, value),
             Fault::StuckAddress { bit, value } => core.address_lines = StuckBits::one(bit, value),
@@ -51,7 +52,11 @@ impl Defects {
                 tables.drift = Some(Drift { after, entry: row, bit });
             }
             Fault::UncheckedCommit => tables.unchecked = true,
-            Fault::Conduct(_) | Fault::WrongLatencyClaim | Fault::WrongDatapath | Fault::WrongClockClaim => {}
+            // The board asks for these by itself, where it treats packets.
+            Fault::Conduct(_) => {}
+            Fault::WrongLatencyClaim => claims.latency = 1,
+            Fault::WrongDatapath => claims.datapath = 8,
+            Fault::WrongClockClaim => claims.pll_hz = Some(1),
             Fault::SpoiltRow { row, column, bit } => {
                 player.spoilt = Some(SpoiltSample { row, column, bit });
             }
@@ -65,15 +70,5 @@ impl Defects {
             Fault::HiddenPause { row } => burst.hidden_pause = Some(row),
         }
         defects
-    }
-}
-
-/// The false claims of a board that has this fault.
-fn wrong_claims(fault: Fault) -> WrongClaims {
-    match fault {
-        Fault::WrongLatencyClaim => WrongClaims { latency: 1, ..WrongClaims::default() },
-        Fault::WrongDatapath => WrongClaims { datapath: 8, ..WrongClaims::default() },
-        Fault::WrongClockClaim => WrongClaims { pll_hz: Some(1), ..WrongClaims::default() },
-        _ => WrongClaims::default(),
     }
 }
