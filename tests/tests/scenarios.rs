@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 use halfrow::board::deadlines::Step;
+use halfrow_pipe::{FaultInfo, Parameter, Range};
 use halfrow_tests::program::halfrow;
 use halfrow_tests::scenario::{Scenario, run_all_on_boards};
 use halfrow_tests::scenarios::{
@@ -91,15 +92,29 @@ fn every_fault_that_the_program_lists_has_a_scenario() {
         listed["faults"].as_array().unwrap().iter().filter_map(|fault| fault["name"].as_str()).collect();
     let names: Vec<_> = halfrow_mock::catalogue().map(|fault| fault.name).collect();
     assert_eq!(listed, names);
-    let missing: Vec<_> = names.iter().filter(|name| !is_in(scenarios::all(), name)).collect();
+    let missing = without_scenario(scenarios::all, names.iter().map(|name| format!("fault={name}")));
     assert!(missing.is_empty(), "no scenario for {missing:?}");
-    let board = halfrow_mock::FAULTS.iter().map(|fault| fault.info.name);
-    let missing: Vec<_> = board.filter(|name| !is_in(BROKEN_GRIDS.iter(), name)).collect();
-    assert!(missing.is_empty(), "no scenario behind a grid for {missing:?}");
+    for (which, scenarios) in [("without a grid", BROKEN_BOARDS), ("behind a grid", BROKEN_GRIDS)] {
+        let kinds = halfrow_mock::FAULTS.iter().flat_map(|fault| kinds(&fault.info));
+        let missing = without_scenario(|| scenarios.iter(), kinds);
+        assert!(missing.is_empty(), "no scenario {which} for {missing:?}");
+    }
 }
 
-/// Whether one of the scenarios has the fault called `name`.
-fn is_in(mut scenarios: impl Iterator<Item = &'static Scenario>, name: &str) -> bool {
-    let fault = format!("fault={name}");
-    scenarios.any(|scenario| scenario.options.split(',').any(|option| option == fault))
+/// The options that ask for a fault: more than one where it stands for several, which `instead` tells apart.
+fn kinds(fault: &FaultInfo) -> Vec<String> {
+    let name = format!("fault={}", fault.name);
+    let instead = fault.parameters.iter().find(|parameter| parameter.key == "instead");
+    let Some(Parameter { range: Range::Words(words), .. }) = instead else { return vec![name] };
+    words.iter().map(|word| format!("{name},instead={word}")).collect()
+}
+
+/// Those of `asked` that none of the scenarios gives to its board.
+fn without_scenario<S: Iterator<Item = &'static Scenario>>(
+    scenarios: impl Fn() -> S,
+    asked: impl Iterator<Item = String>,
+) -> Vec<String> {
+    let is_given =
+        |asked: &str, scenario: &Scenario| format!("{},", scenario.options).contains(&format!(",{asked},"));
+    asked.filter(|asked| !scenarios().any(|scenario| is_given(asked, scenario))).collect()
 }

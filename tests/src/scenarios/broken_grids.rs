@@ -110,8 +110,33 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     ),
     fails(
         "factors in front of a wrong one that are written to a board with grids",
-        ",fault=unkept-rule",
+        ",fault=unkept-rule,instead=partial-write",
         "a table entry out of range must be refused, and nothing of its packet written",
+    ),
+    fails(
+        "a wrong entry named by its place in the packet, to a board with grids",
+        ",fault=unkept-rule,instead=place-in-packet",
+        "as `range`, detail 2, but it refused it as `range`, detail 1",
+    ),
+    fails(
+        "a refused acknowledgement of rows of a grid",
+        ",fault=unkept-rule,instead=ack-refused",
+        "the board must leave ROW_ACK unanswered, but it refused it as `session`",
+    ),
+    fails(
+        "any row behind one that waits, behind a grid",
+        ",fault=unkept-rule,instead=any-follower",
+        "took it without an answer (rule: a row out of place must be refused)",
+    ),
+    fails(
+        "an acknowledgement of rows that were never sent, behind a grid",
+        ",fault=unkept-rule,instead=ack-beyond",
+        "as the first row that is not acknowledged (next_row_out)",
+    ),
+    fails(
+        "a close that is counted as a session, behind a grid",
+        ",fault=unkept-rule,instead=counted-close",
+        "a greeting must open the next session",
     ),
     fails(
         "a commit of a grid that is not checked",

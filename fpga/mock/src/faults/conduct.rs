@@ -35,14 +35,23 @@ pub enum Conduct {
 
 impl Conduct {
     /// Those that break a rule which a run must try on purpose, by their names.
-    pub(crate) const UNKEPT: [Self; 6] = [
-        Self::PartialWrite,
-        Self::PlaceInPacket,
-        Self::AckRefused,
-        Self::AnyFollower,
-        Self::AckBeyond,
-        Self::CountedClose,
+    pub(crate) const UNKEPT: [(&str, Self); 6] = [
+        ("partial-write", Self::PartialWrite),
+        ("place-in-packet", Self::PlaceInPacket),
+        ("ack-refused", Self::AckRefused),
+        ("any-follower", Self::AnyFollower),
+        ("ack-beyond", Self::AckBeyond),
+        ("counted-close", Self::CountedClose),
     ];
-    pub(crate) const UNKEPT_NAMES: [&str; 6] =
-        ["partial-write", "place-in-packet", "ack-refused", "any-follower", "ack-beyond", "counted-close"];
+
+    /// The names alone, in the order of [`Self::UNKEPT`].
+    pub(crate) const UNKEPT_NAMES: [&str; Self::UNKEPT.len()] = {
+        let mut names = [""; Self::UNKEPT.len()];
+        let mut place = 0;
+        while place < names.len() {
+            names[place] = Self::UNKEPT[place].0;
+            place += 1;
+        }
+        names
+    };
 }

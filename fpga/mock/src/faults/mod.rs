@@ -204,7 +204,7 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
             Some("partial-write"),
             "what the board does instead",
         )],
-        |values| Ok(BoardFault::Conduct(values.choice("instead", &Conduct::UNKEPT)?)),
+        |values| Ok(BoardFault::Conduct(values.choice("instead", &Conduct::UNKEPT)?.1)),
     ),
     fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
     fault("wrong-clock-claim", "the board claims a pixel clock of 1 Hz, made by its PLL", &[], |_| {
