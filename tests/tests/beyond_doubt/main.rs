@@ -15,6 +15,7 @@ mod careless;
 mod conduct;
 mod counters;
 mod doubled;
+mod each_rule;
 mod echoes;
 mod exercised;
 mod floods;

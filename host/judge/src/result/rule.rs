@@ -2,10 +2,23 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A rule of protocol/WIRE.md or fpga/AT-SPEED.md that a run tries on purpose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Rule {
+macro_rules! rules {
+    ($($(#[$doc:meta])* $name:ident,)*) => {
+        /// A rule of protocol/WIRE.md or fpga/AT-SPEED.md that a run tries on purpose.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum Rule {
+            $($(#[$doc])* $name,)*
+        }
+
+        impl Rule {
+            /// All rules.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
+        }
+    };
+}
+
+rules! {
     /// A request that is cut short or has a field without meaning is refused.
     Payload,
     /// A packet whose kind is not a request is refused.
