@@ -27,8 +27,9 @@ fn every_code_is_explained() {
     let of_station = STATION.lines().filter_map(|line| line.strip_prefix("* `")?.split('`').next());
     let codes: Vec<_> = own.chain(of_station).collect();
     assert!(codes.len() > 600, "{}", codes.len());
-    let is_code =
-        |it: &serde_json::Value| !["verdict", "check", "line", "fault"].contains(&it["of"].as_str().unwrap());
+    let is_code = |it: &serde_json::Value| {
+        !["verdict", "check", "rule", "line", "fault"].contains(&it["of"].as_str().unwrap())
+    };
     let told: Vec<_> = explained(&codes).into_iter().filter(is_code).collect();
     assert_eq!(told.len(), codes.len());
     for (code, it) in codes.iter().zip(told) {
@@ -106,6 +107,24 @@ fn verdicts_checks_and_faults_are_explained_too() {
     for it in explained(&["PASS", "FAIL", "ERROR", "link", "frames"]) {
         assert!(it["do"][0].as_str().is_some_and(|act| act.ends_with('.')), "{it}");
     }
+}
+
+/// The words of `rule`, which stored reports have.
+const RULES: &str = "payload kind skipped configuration span entry address damage once unanswered session held new-session \
+    refusal-session closed commit-crc generation shape no-grid commit-frame pending forgotten row-place window credit inside rows \
+    samples again banks wide row-number burst under-way records ended cut repeated trap not-ready power-up";
+
+#[test]
+fn each_rule_that_a_finding_names_is_explained() {
+    let words: Vec<_> = RULES.split_whitespace().collect();
+    assert_eq!(words.len(), Rule::ALL.len());
+    let told = explained(&words).into_iter().filter(|it| it["of"] == "rule");
+    let codes: Vec<_> = told.map(|it| it["code"].as_str().unwrap().to_owned()).collect();
+    assert_eq!(codes, words);
+    let run = halfrow(small("verify", &["--json", "--board", "mock,fault=any-session"])).json();
+    let told = explained(&[run["finding"]["parameters"]["rule"].as_str().unwrap()]);
+    let told = told.iter().find(|it| it["of"] == "rule").unwrap();
+    assert_eq!(told["meaning"], "A packet of another session must have no effect.");
 }
 
 /// The words at the left of a PASS with limits, of a FAIL, of a soak and of a simulated board.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use halfrow::report::wording::bench_then_next;
-use halfrow::result::{CheckName, examples};
+use halfrow::result::{CheckName, Rule, examples};
 use halfrow::verdict::Verdict;
 use halfrow::words::sentence;
 use serde::Serialize;
@@ -21,7 +21,8 @@ const CODES_OF_STATION: &[(&str, &[&str])] = include!(concat!(env!("OUT_DIR"), "
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Explanation {
     pub(super) code: String,
-    /// What kind of word it is: finding, defect, not-exercised, error, station-error, verdict, check, line or fault.
+    /// What kind of word it is: finding, defect, not-exercised, error, station-error, verdict, check, rule, line or
+    /// fault.
     pub(super) of: &'static str,
     pub(super) meaning: String,
     /// An example sentence, or a message with the names of its parameters in capitals.
@@ -80,8 +81,8 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     all
 }
 
-/// The words of a report that are not codes: verdicts, checks, the words at the left of its lines, and the faults that a mock
-/// board can have.
+/// The words of a report that are not codes: verdicts, checks, the wire's rules, the words at the left of its lines, and the faults
+/// that a mock board can have.
 fn words() -> impl Iterator<Item = Explanation> {
     let meaning = |name: &str| MEANINGS.iter().find(|(known, ..)| *known == name).map_or("", |(_, it, _)| it);
     let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Error].map(|verdict| Explanation {
@@ -112,7 +113,22 @@ fn words() -> impl Iterator<Item = Explanation> {
         place: "what `halfrow faults --json` lists",
         ..Explanation::default()
     });
-    faults.chain(checks).chain(lines::all()).chain(verdicts)
+    faults.chain(checks).chain(rules()).chain(lines::all()).chain(verdicts)
+}
+
+/// The rules of the wire, each by the word that a finding has for it.
+fn rules() -> impl Iterator<Item = Explanation> {
+    Rule::ALL.iter().filter_map(|rule| {
+        Some(Explanation {
+            code: serde_json::to_value(rule).ok()?.as_str()?.to_owned(),
+            of: "rule",
+            meaning: sentence(rule.meaning()).unwrap_or_default(),
+            fault: "the board's, if the verdict is FAIL; otherwise the link may have done it, as its finding says",
+            acts: vec!["Run `halfrow explain` with the code of the finding that names it.".to_owned()],
+            place: "`rule` among the parameters of a finding, such as `rule-broken`",
+            ..Explanation::default()
+        })
+    })
 }
 
 /// What to do after a verdict, whatever led to it.

@@ -27,7 +27,7 @@ const MOST_LIKE: usize = 5;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The codes, as `halfrow codes` and `halfrow-station codes` list them; or a verdict, a check or another word at the left of a result, a fault of the mock board
+    /// The codes, as `halfrow codes` and `halfrow-station codes` list them; or a verdict, a check or another word at the left of a result, a rule of the wire, a fault of the mock board
     #[arg(required = true, value_name = "CODE", value_parser = Code, hide_possible_values = true)]
     codes: Vec<String>,
 }

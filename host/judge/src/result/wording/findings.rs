@@ -257,7 +257,7 @@ fn counters_right(rows: usize, damaged: u32) -> String {
 fn counter_wrong(counter: Counter, (counted, right): (u32, u32), rule: Option<Rule>) -> String {
     let (counted, right) = (grouped(counted), grouped(right));
     let (words, bound) = (counter.words(), counter.bound());
-    let tried = rule.map(|rule| format!(" (rule: {})", rules::meaning(rule))).unwrap_or_default();
+    let tried = rule.map(|rule| format!(" (rule: {})", rule.meaning())).unwrap_or_default();
     // Of damaged packets only what was counted meanwhile is compared.
     let is_of_damaged = matches!(counter, Counter::CrcErrors | Counter::FramingErrors);
     let more = if is_of_damaged && rule == Some(Rule::Damage) { " more" } else { "" };

@@ -40,7 +40,7 @@ pub(super) fn broken(rule: Rule, request: &str, right: &Answer, found: &Answer) 
         }
         _ => did(found),
     };
-    format!("the board must {}, but it {did} (rule: {})", must(right, request), meaning(rule))
+    format!("the board must {}, but it {did} (rule: {})", must(right, request), rule.meaning())
 }
 
 fn must(right: &Answer, request: &str) -> String {
@@ -146,50 +146,61 @@ fn reason(code: u8) -> String {
     RefusalCode::from_code(code).map_or_else(|| format!("code {code}"), |reason| reason.name().to_owned())
 }
 
-/// The rule as a clause.
-#[expect(clippy::too_many_lines, reason = "one line a rule")]
-pub(super) fn meaning(rule: Rule) -> &'static str {
-    match rule {
-        Rule::Payload => "a request cut short, or with a field without meaning, must be refused",
-        Rule::Kind => "a packet whose kind is not a request must be refused",
-        Rule::Skipped => "bytes after a request's fields, and unused bits of a row's place, must be ignored",
-        Rule::Configuration => "a configuration must be set as it is, or refused without effect",
-        Rule::Span => "a span outside a table must be refused",
-        Rule::Entry => "a table entry out of range must be refused, and nothing of its packet written",
-        Rule::Address => "an entry must be written where it belongs, to every port, and read from there",
-        Rule::Damage => "a damaged packet must have no effect",
-        Rule::Once => "each request must have one answer, and most had two",
-        Rule::Unanswered => "an acknowledgement of rows must never be answered",
-        Rule::Session => "a packet of another session must have no effect",
-        Rule::Held => "a board must be held for 10 s after its holder's last packet, but can be taken over",
-        Rule::NewSession => "a greeting must open the next session, which keeps only tables and settings",
-        Rule::RefusalSession => "a refusal must carry the session of its request, which is 0 for a greeting",
-        Rule::Closed => "RESET must close a session at level 1 only, and drop tables at level 2 only",
-        Rule::CommitCrc => "a commit whose CRC does not match the tables must be refused",
-        Rule::Generation => "a commit of active or pending tables must be answered, generation 0 refused",
-        Rule::Shape => "a commit of a grid that the board cannot have must be refused",
-        Rule::NoGrid => "a commit with v = 0 must be of row factors, whatever its k",
-        Rule::CommitFrame => "a commit must take effect with its frame, not before, and swap the banks",
-        Rule::Pending => "nothing may change the tables of a pending commit",
-        Rule::Forgotten => "RESET must forget a pending commit",
-        Rule::RowPlace => "a row out of place must be refused",
-        Rule::Window => "after RESET the window must be next_row plus row_banks_in",
-        Rule::Credit => "a row beyond the window must be refused",
-        Rule::Inside => "what must not be done while rows are inside or kept must be refused",
-        Rule::Rows => "rows must come back in place, whatever was refused between them",
-        Rule::Samples => "samples beyond their depth must be counted, and go in as they are",
-        Rule::Again => "a row must be sent again when asked for, until it is acknowledged",
-        Rule::Banks => "the board must keep row_banks_out rows until they are acknowledged, and make no more",
-        Rule::Wide => "rows of the greatest width must come back right",
-        Rule::RowNumber => "rows must keep their numbers, however large these are",
-        Rule::Burst => "an impossible burst must be refused, and no other",
-        Rule::UnderWay => "what must not be done while a burst is under way must be refused",
-        Rule::Records => "records must be kept until the host has them, and sent again when asked for",
-        Rule::Ended => "a burst must end where it is told to",
-        Rule::Cut => "RESET must end a burst wherever it is",
-        Rule::Repeated => "every frame must repeat the first, in a burst that asks for it",
-        Rule::Trap => "the first row whose signature is not the expected one must be kept",
-        Rule::NotReady => "a board without configuration or tables must not be ready",
-        Rule::PowerUp => "RESET must leave the tables as they are at power-up",
+impl Rule {
+    /// The rule as a clause.
+    #[must_use]
+    #[expect(clippy::too_many_lines, reason = "one line a rule")]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Payload => "a request cut short, or with a field without meaning, must be refused",
+            Self::Kind => "a packet whose kind is not a request must be refused",
+            Self::Skipped => {
+                "bytes after a request's fields, and unused bits of a row's place, must be ignored"
+            }
+            Self::Configuration => "a configuration must be set as it is, or refused without effect",
+            Self::Span => "a span outside a table must be refused",
+            Self::Entry => "a table entry out of range must be refused, and nothing of its packet written",
+            Self::Address => "an entry must be written where it belongs, to every port, and read from there",
+            Self::Damage => "a damaged packet must have no effect",
+            Self::Once => "each request must have one answer, and most had two",
+            Self::Unanswered => "an acknowledgement of rows must never be answered",
+            Self::Session => "a packet of another session must have no effect",
+            Self::Held => {
+                "a board must be held for 10 s after its holder's last packet, but can be taken over"
+            }
+            Self::NewSession => "a greeting must open the next session, which keeps only tables and settings",
+            Self::RefusalSession => {
+                "a refusal must carry the session of its request, which is 0 for a greeting"
+            }
+            Self::Closed => "RESET must close a session at level 1 only, and drop tables at level 2 only",
+            Self::CommitCrc => "a commit whose CRC does not match the tables must be refused",
+            Self::Generation => "a commit of active or pending tables must be answered, generation 0 refused",
+            Self::Shape => "a commit of a grid that the board cannot have must be refused",
+            Self::NoGrid => "a commit with v = 0 must be of row factors, whatever its k",
+            Self::CommitFrame => "a commit must take effect with its frame, not before, and swap the banks",
+            Self::Pending => "nothing may change the tables of a pending commit",
+            Self::Forgotten => "RESET must forget a pending commit",
+            Self::RowPlace => "a row out of place must be refused",
+            Self::Window => "after RESET the window must be next_row plus row_banks_in",
+            Self::Credit => "a row beyond the window must be refused",
+            Self::Inside => "what must not be done while rows are inside or kept must be refused",
+            Self::Rows => "rows must come back in place, whatever was refused between them",
+            Self::Samples => "samples beyond their depth must be counted, and go in as they are",
+            Self::Again => "a row must be sent again when asked for, until it is acknowledged",
+            Self::Banks => {
+                "the board must keep row_banks_out rows until they are acknowledged, and make no more"
+            }
+            Self::Wide => "rows of the greatest width must come back right",
+            Self::RowNumber => "rows must keep their numbers, however large these are",
+            Self::Burst => "an impossible burst must be refused, and no other",
+            Self::UnderWay => "what must not be done while a burst is under way must be refused",
+            Self::Records => "records must be kept until the host has them, and sent again when asked for",
+            Self::Ended => "a burst must end where it is told to",
+            Self::Cut => "RESET must end a burst wherever it is",
+            Self::Repeated => "every frame must repeat the first, in a burst that asks for it",
+            Self::Trap => "the first row whose signature is not the expected one must be kept",
+            Self::NotReady => "a board without configuration or tables must not be ready",
+            Self::PowerUp => "RESET must leave the tables as they are at power-up",
+        }
     }
 }
