@@ -15,7 +15,7 @@ const TABLE_BANKS: Limits = Limits::new("table-banks", 1, 2);
 const MAX_WIDTH: Limits = Limits::new("max-width", 64, 2592);
 const MAX_HEIGHT: Limits = Limits::new("max-height", 1, 2048);
 const PIXEL_CLOCK: Limits = Limits::new("pixel-clock", 1, 1_000_000_000);
-const RECORDS: Limits = Limits::new("records", 2, 1024);
+const RECORDS: Limits = Limits::new("records", 2, 65535);
 const LEAST_FRAME_BLANKING: Limits = Limits::new("least-frame-blanking", 0, 4095);
 const ENTRIES: Limits = Limits::new("entries", LEAST_ENTRIES as i64, 65535);
 /// The fewest entries of a bank that can hold a grid.
@@ -165,7 +165,7 @@ pub struct Options {
     pub serial: u64,
     /// Whether the board makes bursts.
     pub bursts: BurstBuild,
-    /// Records of bursts that are kept, 2 to 1024.
+    /// Records of bursts that are kept, 2 to 65535.
     pub records: u16,
     /// Pixel clocks that the build needs between the frames of a burst, 0 to 4095.
     pub least_frame_blanking: u16,

@@ -72,6 +72,8 @@ fn builds_of_every_kind_keep_the_rules() {
         "bursts=untrapped",
         "records=226",
         "records=300",
+        "records=1024",
+        "records=1025",
         others,
     ] {
         let report = judge_by_plan(&plan(), open(format!("mock,{options}").trim_end_matches(',')));
@@ -80,6 +82,9 @@ fn builds_of_every_kind_keep_the_rules() {
             panic!("{}", check(&report).detail())
         };
         assert!(requests > 300, "{options}: {requests}");
+        // A burst fills no more than 1024 (docs/running.md).
+        let further = NotExercised::FurtherRecords { filled: 1024 };
+        assert_eq!(report.not_exercised.contains(&further), options == "records=1025", "{options}");
     }
     for (height, options) in [(1, small), (2, "max-height=2"), (3, "max-height=3")] {
         let low = Plan { selection: plan().selection, ..System { height, ..System::TINY }.plan() };

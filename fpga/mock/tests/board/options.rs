@@ -32,7 +32,7 @@ const GIVEN: &[(&str, &str)] = &[
     ("pixel-clock", "50000000"),
     ("serial", "144115188075855871"),
     ("bursts", "untrapped"),
-    ("records", "1024"),
+    ("records", "65535"),
     ("least-frame-blanking", "4095"),
     ("entered", "no"),
     ("datapath2", "no"),
@@ -56,7 +56,7 @@ fn every_option_is_set_by_its_name() {
         // The largest number of 57 bits.
         serial: 0x01ff_ffff_ffff_ffff,
         bursts: BurstBuild::Untrapped,
-        records: 1024,
+        records: 65535,
         least_frame_blanking: 4095,
         entered: false,
         datapath2: false,
@@ -109,7 +109,7 @@ fn values_that_are_no_numbers_or_no_known_words_are_refused() {
     assert_eq!(refusal("bursts", "yes"), "bursts=yes is not known; give one of no, untrapped, trapped");
     assert_eq!(refusal("entries", "2047"), "entries=2047 is out of range; give a number from 2048 to 65535");
     assert_eq!(refusal("datapath2", "1"), "datapath2=1 is not known; give one of no, yes");
-    assert_eq!(refusal("records", "1"), "records=1 is out of range; give a number from 2 to 1024");
+    assert_eq!(refusal("records", "1"), "records=1 is out of range; give a number from 2 to 65535");
     assert_eq!(refusal("taps", "six"), "taps=six is not known; give one of five, seven");
     assert_eq!(refusal("depths", "8+9"), "depths=9 is not known; give one of 8, 10, 12");
 }
