@@ -74,15 +74,23 @@ mod tests {
     #[test]
     fn each_bit_of_the_line_status_is_an_error_of_its_own() {
         let none = LineErrors::default();
-        for (bit, expected) in [
-            (1, LineErrors { overrun: 1, ..none }),
-            (2, LineErrors { parity: 1, ..none }),
-            (3, LineErrors { framing: 1, ..none }),
-            (4, LineErrors { breaks: 1, ..none }),
+        for (bit, expected, advice) in [
+            (1, LineErrors { overrun: 1, ..none }, "flow=rtscts"),
+            (2, LineErrors { parity: 1, ..none }, "eight bits"),
+            (3, LineErrors { framing: 1, ..none }, "baud="),
+            (4, LineErrors { breaks: 1, ..none }, "power and bitstream"),
         ] {
             assert_eq!(stripped(&[0x01, 0x60 | 1 << bit, 7], 64).1, expected);
             assert_eq!(expected.sum(), 1);
+            assert!(expected.advice().unwrap().contains(advice), "{expected}");
         }
+    }
+
+    /// A board without power sends nothing that anybody could fetch too late.
+    #[test]
+    fn a_line_that_is_held_low_is_looked_at_before_bytes_that_were_lost() {
+        let errors = LineErrors { breaks: 1, overrun: 9, parity: 9, framing: 0 };
+        assert!(errors.advice().unwrap().contains("power and bitstream"));
     }
 
     /// As Linux's driver for these chips has it (drivers/usb/serial/ftdi_sio.c, ftdi_process_packet).
