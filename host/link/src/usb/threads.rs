@@ -355,6 +355,8 @@ mod tests {
         }
         // What is waiting to be written, and what the writing thread holds.
         assert!(taken <= OUTGOING + WRITE, "{taken}");
+        threads.write_out(LONG);
+        assert!(!threads.shared.queues().outgoing.is_empty());
         drop(threads);
         assert!(begun.elapsed() < LONG, "{:?}", begun.elapsed());
     }
