@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use halfrow::link::{Candidate, Link, LinkError, OpenError, SerialError};
+use halfrow::link::{Candidate, Link, LinkError, OpenError, SerialError, UsbError};
 use halfrow::progress::Silent;
 use halfrow::result::{Finding, Report};
 use halfrow::run::{RunOptions, verify};
@@ -17,6 +17,9 @@ use halfrow_tests::system::{System, open};
 
 /// How long the run waits for a board that does not come back.
 const PATIENCE: Duration = Duration::from_millis(300);
+/// What the boards are behind that are kept from a run.
+const PORT: &str = "/dev/ttyUSB1";
+const CHIP: &str = "FT2232H";
 
 /// A line to a board that two hosts reach.
 struct Line {
@@ -152,26 +155,48 @@ fn a_board_that_was_taken_over_before_a_second_look_is_left_to_who_took_it() {
     }
 }
 
+/// Why a board is not opened again, and what a run then ends with.
+type Refused = (fn() -> OpenError, Cause, &'static str);
+
+const REFUSED: [Refused; 7] = [
+    (
+        || SerialError::NotAllowed { path: PORT.into(), remedy: "join the group dialout".to_owned() }.into(),
+        Cause::Station,
+        "you may not open /dev/ttyUSB1; join the group dialout",
+    ),
+    (
+        || SerialError::NotGiven(PORT.into()).into(),
+        Cause::Station,
+        "/dev/ttyUSB1 is on this computer, but this program is not given it",
+    ),
+    (
+        || SerialError::InUse { path: PORT.into(), holders: Vec::new() }.into(),
+        Cause::Busy,
+        "/dev/ttyUSB1 is in use",
+    ),
+    (
+        || UsbError::NotPermitted { name: CHIP.to_owned(), remedy: "run the line".to_owned() }.into(),
+        Cause::Station,
+        "this user may not open the USB device FT2232H; run the line",
+    ),
+    (
+        || UsbError::NotGiven { name: CHIP.to_owned() }.into(),
+        Cause::Station,
+        "the USB device FT2232H is plugged in, but this program is not given it",
+    ),
+    (
+        || UsbError::Busy { what: CHIP.to_owned(), holders: Vec::new() }.into(),
+        Cause::Busy,
+        "FT2232H is in use",
+    ),
+    (|| SerialError::Missing(PORT.into()).into(), Cause::Station, "the board did not come back in 0.3 s"),
+];
+
 #[test]
 fn a_board_that_may_not_be_opened_again_is_not_said_to_be_away() {
-    let not_allowed = || SerialError::NotAllowed {
-        path: "/dev/ttyUSB1".into(),
-        remedy: "join the group dialout".to_owned(),
-    };
-    let in_use = || SerialError::InUse { path: "/dev/ttyUSB1".into(), holders: Vec::new() };
-    let cases: [(fn() -> SerialError, _, _); 3] = [
-        (not_allowed, Cause::Station, "you may not open /dev/ttyUSB1; join the group dialout"),
-        (in_use, Cause::Busy, "/dev/ttyUSB1 is in use"),
-        (
-            || SerialError::Missing("/dev/ttyUSB1".into()),
-            Cause::Station,
-            "the board did not come back in 0.3 s",
-        ),
-    ];
-    for (refused, cause, said) in cases {
+    for (refused, cause, said) in REFUSED {
         let lost = open("mock,fault=disconnect,packet=60");
-        let reopen = move || Err::<End, _>(OpenError::from(refused()));
-        let report = judged(lost.reopened_by(reopen), false);
+        let report = judged(lost.reopened_by(move || Err::<End, _>(refused())), false);
         assert_eq!(report.cause, cause, "{}", report.headline());
         assert!(report.headline().contains(said), "{}", report.headline());
     }
