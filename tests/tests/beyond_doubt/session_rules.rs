@@ -1,6 +1,8 @@
 //! Boards that are sound except in what opens a session, what ends one, and what they count.
 
 use std::convert::Infallible;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use halfrow::link::{Candidate, WireLink};
@@ -252,7 +254,8 @@ fn a_row_that_is_taken_where_it_must_be_refused_is_told_of_though_nothing_is_sai
 /// Behind the RESET by which the host closes its session the board is whose it may be.
 #[test]
 fn another_host_may_take_a_board_whose_session_is_closed() {
-    let (mut opened, mut is_closed) = (0, false);
+    let (mut opened, mut is_closed, refused) = (0, false, Arc::new(AtomicUsize::new(0)));
+    let seen = Arc::clone(&refused);
     let altered = move |toward, packet: Passing| {
         let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
         match (toward, request) {
@@ -262,6 +265,7 @@ fn another_host_may_take_a_board_whose_session_is_closed() {
                 let held = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: 90 };
                 let mut refusal = packet.saying(&Reply::Refusal(held));
                 refusal.header.kind = Kind::Refusal.code();
+                seen.fetch_add(1, Ordering::Relaxed);
                 return vec![refusal];
             }
             _ => {}
@@ -270,6 +274,7 @@ fn another_host_may_take_a_board_whose_session_is_closed() {
     };
     let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+    assert!(refused.load(Ordering::Relaxed) > 0);
 }
 
 /// The bytes of a request's payload.
