@@ -108,7 +108,7 @@ impl Observations {
         seen.least = seen.least.min(first).min(last);
         seen.most = seen.most.max(first).max(last);
         seen.rows += 1;
-        if (first, last) != (claimed, claimed) || claimed > limit {
+        if (first, last) != (claimed, claimed) {
             seen.wrong_rows += 1;
             let (row, frame) = (row.row, row.frame);
             let new = WrongLatency { row, frame, first, last, claimed, is_one_row: true };
