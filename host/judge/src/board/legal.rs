@@ -162,6 +162,29 @@ const LIMITS: [Limit; 15] = [
 /// # Errors
 /// [`BoardError::Impossible`] for the first that none can have.
 pub(crate) fn possible(capabilities: &Capabilities) -> Result<(), BoardError> {
+    // A new capability does not compile here until somebody has decided whether [`LIMITS`] needs a line for it.
+    let Capabilities {
+        datapath: _,
+        max_width: _,
+        max_height: _,
+        depths: _,
+        taps: _,
+        latency: _,
+        ring: _,
+        least_blanking: _,
+        table_banks: _,
+        row_banks_in: _,
+        row_banks_out: _,
+        step_ports: _,
+        kernel_ports: _,
+        clock_source: _,
+        clock_hz: _,
+        bursts: _,
+        entered: _,
+        grids: _,
+        nature: _,
+        name: _,
+    } = capabilities;
     let limits = match capabilities.known_datapath() {
         Ok(Datapath::RowFactors | Datapath::Grids) => &LIMITS[..],
         Err(_) => &[],
