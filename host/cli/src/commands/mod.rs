@@ -184,14 +184,14 @@ impl Cli {
 
 /// Whether the command has a result that is printed as JSON.
 fn has_document(command: &Command) -> bool {
-    !matches!(
-        command,
-        Command::Serve(_)
-            | Command::Station(_)
-            | Command::Commands(_)
-            | Command::Completions(_)
-            | Command::Manual(_)
-    )
+    match command {
+        Command::Verify(_) | Command::Soak(_) | Command::Correct(_) | Command::Tables(_) => true,
+        Command::Lens(_) | Command::Kernel(_) | Command::Paper(_) | Command::Frames(_) => true,
+        Command::Boards(_) | Command::Info(_) | Command::Link(_) | Command::Load(_) => true,
+        Command::Faults(_) | Command::Codes(_) | Command::Explain(_) | Command::Schema(_) => true,
+        Command::Serve(_) | Command::Station(_) => false,
+        Command::Commands(_) | Command::Completions(_) | Command::Manual(_) => false,
+    }
 }
 
 /// Prints the result that `exit` sums up. If it cannot be printed, `exit` stands, unless it is a mere [`Exit::Pass`].
