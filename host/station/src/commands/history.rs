@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     after: Option<Cursor>,
     /// Print JSON
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {

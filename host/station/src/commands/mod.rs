@@ -131,12 +131,24 @@ impl Cli {
     #[must_use]
     pub fn documented(&self) -> Option<&'static str> {
         match &self.command {
-            Command::Run(run::Arguments { json: true, .. }) => Some("run"),
-            Command::Check(check::Arguments { json: true, .. }) => Some("check"),
-            Command::Plant(arguments) if arguments.is_documented() => Some("check"),
-            Command::Prune(kept::Prune { json: true, .. }) => Some("prune"),
-            Command::Codes(codes::Arguments { json: true }) => Some("codes"),
-            _ => None,
+            Command::Run(arguments) => arguments.json.then_some("run"),
+            Command::Check(arguments) => arguments.json.then_some("check"),
+            Command::Plant(arguments) => arguments.is_documented().then_some("check"),
+            Command::Prune(arguments) => arguments.json.then_some("prune"),
+            Command::Codes(arguments) => arguments.json.then_some("codes"),
+            Command::History(arguments) => arguments.json.then_some("history"),
+            Command::Unit(arguments) => arguments.json.then_some("unit"),
+            Command::Yield(arguments) => arguments.json.then_some("yield"),
+            Command::Pareto(arguments) => arguments.json.then_some("pareto"),
+            // Their lists have no schema.
+            Command::Plan(_) | Command::Outbox(_) | Command::Work(_) | Command::Job(_) => None,
+            Command::Board(_) => None,
+            // They print no JSON.
+            Command::Waive(_) | Command::Export(_) | Command::Evidence(_) | Command::Backup(_) => None,
+            Command::Restore(_) | Command::Rebind(_) | Command::Lanes(_) | Command::LangCheck(_) => None,
+            Command::Commands(_) | Command::Schema(_) | Command::Serve(_) | Command::Demo(_) => None,
+            Command::User(_) | Command::Token(_) | Command::Completions(_) | Command::Manual(_) => None,
+            Command::Lane(_) => None,
         }
     }
 

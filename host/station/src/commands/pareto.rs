@@ -20,7 +20,7 @@ pub(super) struct Arguments {
     counted: Counted,
     /// Print JSON
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {

@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     results: Results,
     /// Print JSON
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 /// No unit of this serial number was tested here.

@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     counted: Counted,
     /// Print JSON
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {

@@ -87,6 +87,13 @@ fn what_has_no_verdict_is_a_document_with_a_code() {
     }
     let said = document(&run(&station, "CAT00001", "mock"));
     assert_eq!((&said["error"]["code"], &said["verdict"]), (&"run-unsaved".into(), &Value::Null), "{said:#}");
+    for command in [&["history"][..], &["unit", "S1"], &["yield"], &["pareto"]] {
+        let said = document(&did(&[command, &["--json", "--data", "/nowhere"]].concat()));
+        assert_eq!(
+            (&said["error"]["code"], &said["command"]),
+            (&"store-without-results".into(), &command[0].into())
+        );
+    }
     let usage = document(&did(&["run", "--json", "--moon"]));
     assert_eq!(
         (&usage["error"]["code"], &usage["command"]),
