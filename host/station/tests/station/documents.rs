@@ -175,13 +175,15 @@ fn every_record_is_as_its_schema_says() {
     assert_eq!(database.execute(last, []).unwrap(), 1);
     station.run("CAT00005", "mock");
     let data = station.data().display().to_string();
+    let schema: Value = serde_json::from_str(RECORD).unwrap();
+    let required = schema["required"].as_array().unwrap();
     let mut causes = BTreeSet::new();
     for run in station.query("SELECT id FROM run") {
         let record: Value = serde_json::from_str(&did(&["export", &run, "--data", &data]).said).unwrap();
         assert_eq!(misread(&record), Vec::<String>::new(), "schema/record-1.json");
         causes.insert(record["conclusion"]["cause"].as_str().unwrap().to_owned());
         // The control: one key less, or one more.
-        for key in record.as_object().unwrap().keys() {
+        for key in required.iter().map(|key| key.as_str().unwrap()) {
             let mut less = record.clone();
             less.as_object_mut().unwrap().remove(key);
             assert_eq!(misread(&less).len(), 1, "{key}");
