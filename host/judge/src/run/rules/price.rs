@@ -35,3 +35,30 @@ pub(in crate::run) fn price(prices: &Prices<'_>) -> f64 {
     };
     parts.into_iter().map(seconds).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::words::grouped;
+
+    /// The page gives requests in tens, and bytes in tens of kilobytes.
+    #[test]
+    fn the_page_of_the_rules_names_their_price() {
+        let page = include_str!("../../../../../docs/rules.md");
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        let told = |costs: &[Cost]| {
+            let requests: f64 = costs.iter().map(|cost| cost.requests).sum();
+            let bytes: f64 = costs.iter().map(|cost| cost.bytes).sum();
+            (grouped(10 * (requests / 10.0).round() as u32), 10 * (bytes / 10_000.0).round() as u32)
+        };
+        let ((most, most_bytes), (least, least_bytes)) = (told(&[ALWAYS, BURSTS, TRAP]), told(&[ALWAYS]));
+        for said in [
+            format!(" some {most} requests (a PASS"),
+            format!(" {most_bytes} kB on a board that has everything"),
+            format!(" some {least} requests and {least_bytes} kB on a board without bursts"),
+            format!(" adds a request and some {} bytes", 100 * (BANK.bytes / 100.0).round() as u32),
+        ] {
+            assert!(page.contains(&said), "docs/rules.md does not say `{said}`");
+        }
+    }
+}
