@@ -12,6 +12,11 @@ impl Gaps {
         self.state = seed;
     }
 
+    /// Whether they were started with a seed that gives some.
+    pub(crate) fn have_begun(&self) -> bool {
+        self.state != 0
+    }
+
     /// Blank pixel clocks to be added before a row, 0 to 15. One draw.
     pub(crate) fn extra_blanking(&mut self) -> u32 {
         self.draw() & 0xF

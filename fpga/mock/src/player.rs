@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::banks::{OutBanks, RowName};
 use crate::core::{Core, Entering, Leaving, RowBinding, StuckBits};
-use crate::faults::{BoardFault, Defects};
+use crate::faults::{BoardFault, Conduct, Defects};
 use crate::gaps::Gaps;
 use crate::options::{OptionError, Options};
 use crate::settings::{Settings, SettingsError};
@@ -116,6 +116,8 @@ pub struct Player {
     flush: u32,
     spoilt: Option<SpoiltSample>,
     centre: CentreDefect,
+    /// The gaps of a frame wrongly go on with those of the frame before.
+    gaps_go_on: bool,
     /// Where corrected rows wait to be fetched.
     pub banks: OutBanks,
 }
@@ -136,6 +138,7 @@ impl Player {
             flush: 0,
             spoilt: defects.spoilt,
             centre: defects.centre,
+            gaps_go_on: fault == Some(BoardFault::Conduct(Conduct::GapsGoOn)),
             banks: OutBanks::new(options.row_banks_out, defects.lost_row),
         })
     }
@@ -166,6 +169,7 @@ impl Player {
         }
         settings.check(&self.options)?;
         self.settings = settings;
+        self.gaps = Gaps::default();
         Ok(())
     }
 
@@ -179,7 +183,9 @@ impl Player {
         self.check(row)?;
         let mut blanking = u32::from(self.settings.blanking);
         if row.row == 0 {
-            self.gaps.start(self.settings.gap_seed);
+            if !self.gaps_go_on || !self.gaps.have_begun() {
+                self.gaps.start(self.settings.gap_seed);
+            }
             tables.start_frame(row.frame);
         } else {
             blanking += self.gaps.extra_blanking();

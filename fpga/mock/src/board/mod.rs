@@ -2,12 +2,14 @@
 
 mod bursts;
 mod identity;
+mod pieces;
 mod rows;
 mod session;
 mod setup;
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Cow;
 use std::convert::Infallible;
 use std::time::Duration;
 
@@ -24,6 +26,7 @@ use crate::player::Player;
 use crate::tables::Tables;
 
 use bursts::CLOCKS_A_PACKET;
+use pieces::Pieces;
 use rows::RowBanks;
 use session::Session;
 
@@ -38,6 +41,7 @@ pub struct Board {
     options: Options,
     fault: Option<BoardFault>,
     decoder: Decoder,
+    incoming: Pieces,
     encoder: Encoder,
     outgoing: Vec<u8>,
     session: Session,
@@ -61,6 +65,7 @@ impl Board {
             options: options.clone(),
             fault,
             decoder: Decoder::new(),
+            incoming: Pieces::default(),
             encoder: Encoder::new(),
             outgoing: Vec::new(),
             session: Session::default(),
@@ -79,7 +84,11 @@ impl Board {
     pub fn receive(&mut self, bytes: &[u8], now: Duration) {
         self.end_silence(now);
         let mut decoder = std::mem::take(&mut self.decoder);
-        let mut bytes = bytes;
+        let mut bytes = Cow::Borrowed(bytes);
+        if self.has(Conduct::ZeroUnread) {
+            self.incoming.without_zeros(bytes.to_mut());
+        }
+        let mut bytes = &*bytes;
         while let Some(packet) = decoder.next(&mut bytes) {
             match packet {
                 Ok(packet) => self.packet(&packet, now),
@@ -188,7 +197,7 @@ impl Board {
             sequence: request.sequence,
             reply: true,
             session,
-            window: self.rows.credit(),
+            window: self.window(),
         };
         self.send(&header, reply);
     }
@@ -201,8 +210,14 @@ impl Board {
     }
 
     fn send(&mut self, header: &Header, reply: &Reply<'_>) {
+        let before = self.outgoing.len();
         // Nothing that a board says is longer than a packet. What could not be encoded would be left unsaid.
         let _ = self.encoder.encode(header, |payload| reply.write(payload), &mut self.outgoing);
+        if self.has(Conduct::ZeroUnsent) {
+            let mut packet = self.outgoing.split_off(before);
+            Pieces::default().without_zeros(&mut packet);
+            self.outgoing.append(&mut packet);
+        }
     }
 }
 

@@ -87,6 +87,12 @@ impl RowBanks {
 }
 
 impl Board {
+    /// The window in a packet to the host.
+    pub(super) fn window(&self) -> u32 {
+        let credit = self.rows.credit();
+        if self.has(Conduct::ShortWindow) { credit & u32::from(u16::MAX) } else { credit }
+    }
+
     /// Takes a row into its bank, or handles one that was sent again.
     pub(super) fn row_in(&mut self, row: &RowIn<'_>) -> Result<(), Refused> {
         if self.bursts.is_under_way() {
@@ -242,7 +248,7 @@ impl Board {
             sequence: self.rows.packets,
             reply: false,
             session: self.session.number(),
-            window: self.rows.credit(),
+            window: self.window(),
         };
         self.rows.packets = self.rows.packets.wrapping_add(1);
         self.send(&header, &Reply::RowOut(out));

@@ -101,7 +101,8 @@ impl Board {
     pub(super) fn read_packet(&self, span: &Span) -> Result<Vec<u8>, Refused> {
         let bytes = self.read_entries(span)?;
         let fits = Span::BYTES + bytes.len() <= MAX_PAYLOAD;
-        if fits { Ok(bytes) } else { Err((RefusalCode::Range, span.first)) }
+        let first = if self.has(Conduct::UnnamedRead) { 0 } else { span.first };
+        if fits { Ok(bytes) } else { Err((RefusalCode::Range, first)) }
     }
 
     /// The bytes of entries as the datapath's port reads them.

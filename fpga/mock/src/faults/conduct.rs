@@ -31,17 +31,32 @@ pub enum Conduct {
     AckBeyond,
     /// It counts the close of a session as a session.
     CountedClose,
+    /// It does not send the zero behind a piece of 254 bytes.
+    ZeroUnsent,
+    /// It does not read the zero behind a piece of 254 bytes.
+    ZeroUnread,
+    /// It names 16 bits of its window.
+    ShortWindow,
+    /// It goes on with the gaps of the frame before, instead of beginning with the seed.
+    GapsGoOn,
+    /// It refuses a read that is too long without naming the first entry.
+    UnnamedRead,
 }
 
 impl Conduct {
     /// Those that break a rule which a run must try on purpose, by their names.
-    pub(crate) const UNKEPT: [(&str, Self); 6] = [
+    pub(crate) const UNKEPT: [(&str, Self); 11] = [
         ("partial-write", Self::PartialWrite),
         ("place-in-packet", Self::PlaceInPacket),
         ("ack-refused", Self::AckRefused),
         ("any-follower", Self::AnyFollower),
         ("ack-beyond", Self::AckBeyond),
         ("counted-close", Self::CountedClose),
+        ("zero-unsent", Self::ZeroUnsent),
+        ("zero-unread", Self::ZeroUnread),
+        ("short-window", Self::ShortWindow),
+        ("gaps-go-on", Self::GapsGoOn),
+        ("unnamed-read", Self::UnnamedRead),
     ];
 
     /// The names alone, in the order of [`Self::UNKEPT`].

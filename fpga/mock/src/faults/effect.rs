@@ -57,8 +57,8 @@ impl BoardFault {
             Self::SlowPath { .. } => Streamed::lacks_speed(streamed.made.is_some()),
             Self::LateSwap | Self::WrongClockClaim => Streamed::lacks_speed(streamed.at_speed),
             Self::UncheckedCommit => streamed.lacks_rules(),
-            // Any run goes on after a RESET.
-            Self::Conduct(Conduct::PacketsAnew) => None,
+            // Any run tests the link, and goes on after a RESET.
+            Self::Conduct(Conduct::ZeroUnsent | Conduct::ZeroUnread | Conduct::PacketsAnew) => None,
             // Rows and packets that come again, and sessions after the first, may show misconduct.
             Self::Conduct(_) if streamed.is_harmed => None,
             Self::Conduct(_) => streamed.lacks_rules(),
