@@ -173,6 +173,22 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=counted-close",
         "a greeting must open the next session",
     ),
+    expect(
+        "ERROR",
+        3,
+        "a zero behind a piece of 254 bytes that is not sent",
+        ",fault=unkept-rule,instead=zero-unsent",
+        SMALLER,
+        "no answer to ECHO",
+    ),
+    expect(
+        "ERROR",
+        3,
+        "a zero behind a piece of 254 bytes that is not read",
+        ",fault=unkept-rule,instead=zero-unread",
+        SMALLER,
+        "no answer to ECHO",
+    ),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",
