@@ -173,6 +173,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=counted-close",
         "a greeting must open the next session",
     ),
+    fails(
+        "gaps that go on in the next frame",
+        ",fault=unkept-rule,instead=gaps-go-on",
+        "(rule: a configuration must be set as it is, or refused without effect)",
+    ),
     expect(
         "ERROR",
         3,

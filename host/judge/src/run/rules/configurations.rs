@@ -49,7 +49,8 @@ impl Rules<'_, '_> {
         self.refused(Rule::Configuration, &Request::Commit(unnamed), RefusalCode::Range, 0)?;
         self.right_burst(Rule::Configuration, BurstMode::Fresh)?;
         let made = self.small.made(0, self.height, GENERATION);
-        let compared = Compared::with_gaps(gap_seed).with(&self.small, [FRAME], &made);
+        // Two frames, since the gaps begin anew with each.
+        let compared = Compared::with_gaps(gap_seed).with(&self.small, [FRAME, FRAME + 1], &made);
         self.frames(Rule::Configuration, compared)?;
         self.configure(self.height)
     }
