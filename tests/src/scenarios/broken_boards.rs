@@ -178,6 +178,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=gaps-go-on",
         "(rule: a configuration must be set as it is, or refused without effect)",
     ),
+    fails(
+        "a read that is too long, refused without its first entry",
+        ",fault=unkept-rule,instead=unnamed-read",
+        "the board must refuse TABLE_READ as `range`, detail 1, but it refused it as `range`",
+    ),
     expect(
         "ERROR",
         3,

@@ -98,8 +98,9 @@ impl Rules<'_, '_> {
             }
             let most = Board::entries_at_once(table) as u16;
             if most < entries {
-                let request = Request::TableRead(Span { count: most + 1, ..shadow });
-                self.refused(Rule::Span, &request, RefusalCode::Range, 0)?;
+                let first = u16::from(most + 1 < entries);
+                let request = Request::TableRead(Span { first, count: most + 1, ..shadow });
+                self.refused(Rule::Span, &request, RefusalCode::Range, first)?;
             }
         }
         Ok(())
