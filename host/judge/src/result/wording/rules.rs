@@ -8,8 +8,8 @@ use crate::result::{Answer, RowPart, RowsTried, Rule};
 use crate::words::{count, differ_of, grouped};
 
 /// What to do about any broken rule but one that only signatures show.
-const REMEDY: &str = "Check how the board decodes and carries out requests, and try it with the conformance \
-                                 tests; protocol/WIRE.md has the rules.";
+const REMEDY: &str = "Check how the board decodes and carries out requests against protocol/WIRE.md, and its decoder with \
+                      protocol/vectors.";
 
 /// What to do about a broken rule. Signatures alone may also be wrong because of a path that fails at speed now and then.
 pub(super) fn remedy(found: Option<&Answer>) -> String {
