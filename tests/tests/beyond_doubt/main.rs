@@ -46,6 +46,7 @@ mod stale_packets;
 mod stalls;
 mod told_at_speed;
 mod told_late;
+mod told_request;
 mod uncounted;
 mod unkept_rules;
 mod windows;

@@ -195,6 +195,7 @@ fn what_depends_on_what_was_found_is_said_to_be_the_example_s() {
             request: "RECORDS".to_owned(),
             right: Answer::Burst { ended: true, records: 2 },
             found: Answer::OtherSignatures { frames: 2, first: 0 },
+            asked: None,
         },
         timed,
         Finding::BoardStayedAway { reason: Box::new(reason.clone()), seconds: 1.0 },

@@ -10,7 +10,7 @@ use halfrow_protocol::{Header, Kind, Packet, samples};
 
 use super::answer::{OwnedPacket, status_in, take_reply};
 use super::deadlines::Step;
-use super::sent_requests::Outgoing;
+use super::sent_requests::{LastRequest, Outgoing};
 use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, reset_to, rows};
 
 /// The board's answer to a request.
@@ -119,6 +119,11 @@ impl Board {
     /// The header of the board's last answer.
     pub(crate) fn answered(&self) -> Header {
         self.conversation.answered
+    }
+
+    /// The last request that was waited for.
+    pub(crate) fn last_request(&self) -> &LastRequest {
+        &self.conversation.last
     }
 
     /// Sends a row without waiting, and returns the number of its packet.

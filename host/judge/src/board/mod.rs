@@ -51,6 +51,7 @@ pub use received::{Had, Received};
 pub use retry_limit::RetryLimit;
 pub(crate) use rows::{Given, Unjudged, Unreturned};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
+pub(crate) use sent_requests::LastRequest;
 pub use session_ids::SessionIds;
 pub use stop::Stop;
 pub(crate) use tables::{ReadBack, TablePort};

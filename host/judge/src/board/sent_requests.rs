@@ -49,6 +49,23 @@ impl Outgoing<'_> {
     }
 }
 
+/// A request that was waited for.
+#[derive(Clone, Debug)]
+pub(crate) struct LastRequest {
+    /// Its kind.
+    pub(crate) kind: Kind,
+    /// The number of its packet.
+    pub(crate) sequence: u16,
+    /// Its payload.
+    pub(crate) payload: Vec<u8>,
+}
+
+impl Default for LastRequest {
+    fn default() -> Self {
+        Self { kind: Kind::Hello, sequence: 0, payload: Vec::new() }
+    }
+}
+
 /// A request that was sent.
 struct SentRequest {
     sequence: u16,

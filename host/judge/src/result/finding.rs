@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Account, Answer, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
+    Account, Answer, Asked, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
     EqualAtSpeed, FlippedBit, LateRows, MissingRow, NoBurst, NumberedRow, PlacedRow, Problem, RepeatedRow,
     Repetition, RowsTried, Rule, Shortfall,
 };
@@ -320,6 +320,9 @@ pub enum Finding {
         right: Answer,
         /// What was said.
         found: Answer,
+        /// The request as it was sent; none in reports of versions that did not tell, and where no single packet broke the rule.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        asked: Option<Box<Asked>>,
     },
     /// Two different `ROW_OUT` packets have the same number.
     RowNumberedTwice(NumberedRow),

@@ -9,6 +9,7 @@
 //! takes the code and its parameters, never the sentence.
 
 mod as_text;
+mod asked;
 mod bursts;
 mod check;
 pub mod codes;
@@ -44,6 +45,7 @@ use crate::verdict::{Cause, Verdict};
 use not_exercised::InWords;
 
 pub use crate::target::BoardKind;
+pub use asked::{Asked, Field};
 pub use bursts::{BurstCount, ClockSeen, Corner, EqualAtSpeed, KeptRow, NoBurst, Repetition, Streamed};
 pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;

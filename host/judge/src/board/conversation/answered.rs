@@ -11,7 +11,7 @@ use super::unclosed::Unclosed;
 use crate::board::BoardError;
 use crate::board::answer::{OwnedPacket, take_reply};
 use crate::board::deadlines::Step;
-use crate::board::sent_requests::Outgoing;
+use crate::board::sent_requests::{LastRequest, Outgoing};
 
 impl Conversation {
     /// Asks until a reply comes that `accept` takes.
@@ -23,13 +23,21 @@ impl Conversation {
     ) -> Result<OwnedPacket, BoardError> {
         let retries = self.tally.retries;
         let answer = self.ask_until_answered(asking, step, accept);
-        let answer = answer.map_err(|error| self.looked_into(error, asking))?;
+        let last = LastRequest { kind: asking.kind(), sequence: self.sequence, payload: asking.payload() };
+        let answer = match answer {
+            Ok(answer) => answer,
+            Err(error) => {
+                let error = self.looked_into(error, asking);
+                self.last = last;
+                return Err(error);
+            }
+        };
         self.counted.note_had(1);
         if step == Step::Request && asking.kind() != Kind::Status {
             self.count_after(retries);
             self.count_doubled();
         }
-        self.answered = answer.header;
+        (self.answered, self.last) = (answer.header, last);
         Ok(answer)
     }
 

@@ -16,7 +16,7 @@ use super::conduct::Conduct;
 use super::counted::Counted;
 use super::deadlines::Step;
 use super::lateness::Lateness;
-use super::sent_requests::{LastRequests, Outgoing, Stray};
+use super::sent_requests::{LastRequest, LastRequests, Outgoing, Stray};
 use super::tally::Tally;
 use super::{BoardError, OpenOptions, Received, RetryLimit, Stop};
 use crate::link::{ClosedLink, Link, LinkError};
@@ -92,6 +92,8 @@ pub(super) struct Conversation {
     pub(super) counted: Counted,
     /// The header of the last answer to a request that was waited for.
     pub(super) answered: Header,
+    /// That request.
+    pub(super) last: LastRequest,
     /// Whether to ask for that count wherever a packet may have been lost unnoticed.
     pub(super) counts: bool,
     lateness: Lateness,
@@ -119,6 +121,7 @@ impl Conversation {
             refused: 0,
             counted: Counted::default(),
             answered: Header::default(),
+            last: LastRequest::default(),
             counts: options.counts,
             lateness: Lateness::default(),
             heard_at: Duration::ZERO,

@@ -136,7 +136,9 @@ pub fn sentence(finding: &Finding) -> String {
             "row {row} of frame {frame} went into the board and never came out; when it was streamed again, \
              only row {again} was lost, although the board counts it as received"
         ),
-        Finding::RuleBroken { rule, request, right, found } => rules::broken(*rule, request, right, found),
+        Finding::RuleBroken { rule, request, right, found, asked } => {
+            rules::broken(*rule, (request, asked.as_deref()), right, found)
+        }
         Finding::RowCopyDiffers(PlacedRow { row, frame, rules }) => format!(
             "{} came twice, and the copies differ in samples, place, generation, latencies or pauses, each with a right CRC",
             row_of(*row, *frame, *rules)

@@ -4,7 +4,7 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::RefusalCode;
 
 use super::at_speed::CHECK_TIMING;
-use crate::result::{Answer, RowPart, RowsTried, Rule};
+use crate::result::{Answer, Asked, Field, RowPart, RowsTried, Rule};
 use crate::words::{count, differ_of, grouped};
 
 /// What to do about any broken rule but one that only signatures show.
@@ -29,8 +29,13 @@ pub(super) fn samples_differ((differences, samples): (usize, usize), rows: &Rows
     format!("{differ} in rows that the rules were tried with ({width} x {height})")
 }
 
-/// What the board must do, and what it did.
-pub(super) fn broken(rule: Rule, request: &str, right: &Answer, found: &Answer) -> String {
+/// What the board must do, and what it did, and to which request.
+pub(super) fn broken(
+    rule: Rule,
+    (request, asked): (&str, Option<&Asked>),
+    right: &Answer,
+    found: &Answer,
+) -> String {
     let did = match (right, found) {
         (Answer::Refused { .. }, Answer::Replied { payload }) if !payload.is_empty() => {
             format!("accepted it and answered with {payload}")
@@ -40,7 +45,20 @@ pub(super) fn broken(rule: Rule, request: &str, right: &Answer, found: &Answer) 
         }
         _ => did(found),
     };
-    format!("the board must {}, but it {did} (rule: {})", must(right, request), rule.meaning())
+    let asked = asked.map(|asked| format!(", where {}", as_sent(request, asked))).unwrap_or_default();
+    format!("the board must {}, but it {did} (rule: {}){asked}", must(right, request), rule.meaning())
+}
+
+/// `ROW_IN had sequence 513 and 108 bytes: row_sequence 12, frame 4661, row 0, width 64, flags 0, generation 0, then 00000000…`
+fn as_sent(request: &str, asked: &Asked) -> String {
+    let Asked { sequence, bytes, fields, rest, pending } = asked;
+    let then = if fields.is_empty() { "" } else { "then " };
+    let named = fields.iter().map(|Field { name, value }| format!("{name} {value}"));
+    let told: Vec<_> = named.chain((!rest.is_empty()).then(|| format!("{then}{rest}"))).collect();
+    let told = if told.is_empty() { String::new() } else { format!(": {}", told.join(", ")) };
+    let pending =
+        pending.map(|frame| format!(", and a commit was pending for frame {frame}")).unwrap_or_default();
+    format!("{request} had sequence {sequence} and {}{told}{pending}", count(*bytes, "byte"))
 }
 
 fn must(right: &Answer, request: &str) -> String {

@@ -136,6 +136,7 @@ impl Run<'_> {
                 request: Kind::RowAck.to_string(),
                 right: Answer::Nothing {},
                 found: answer(said),
+                asked: None,
             },
             Misconduct::OutOfOrder { place } => {
                 Finding::RowOutOfOrder(PlacedRow { row: place.row, frame: place.frame, rules })

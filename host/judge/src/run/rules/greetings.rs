@@ -59,7 +59,7 @@ impl Rules<'_, '_> {
         right: Refusal,
     ) -> Result<(), End> {
         let Header { session, .. } = self.run.board.answered();
-        self.judge(rule, Kind::Hello, said, &Response::Refused(right))?;
+        self.judge(rule, Kind::Hello.into(), said, &Response::Refused(right))?;
         if session == 0 { Ok(()) } else { Err(another_session(Rule::RefusalSession, 0, session)) }
     }
 }

@@ -12,6 +12,7 @@ mod counts;
 mod depths;
 mod greetings;
 mod grids;
+mod posed;
 mod power_up;
 mod price;
 mod quoted;
@@ -44,6 +45,7 @@ use crate::progress::Step;
 use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Lead, RowPart, RowsTried, Rule, Suspect};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
+pub(super) use posed::Posed;
 pub(super) use price::price;
 pub(super) use quoted::answer;
 use quoted::answers;
@@ -111,6 +113,8 @@ struct Rules<'a, 'run> {
     height: usize,
     /// Rows of the next frame that were already given to the board.
     given: Given,
+    /// The frame of a commit that is pending, while what the board answers depends on it.
+    pending: Option<u16>,
 }
 
 impl<'a, 'run> Rules<'a, 'run> {
@@ -127,6 +131,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             width: 0,
             height: 0,
             given: Given::default(),
+            pending: None,
         })
     }
 
@@ -166,7 +171,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     fn judge(
         &mut self,
         rule: Rule,
-        kind: Kind,
+        posed: Posed,
         said: Result<Response, BoardError>,
         right: &Response,
     ) -> Result<(), End> {
@@ -176,16 +181,16 @@ impl<'a, 'run> Rules<'a, 'run> {
                 self.refusals.note(right);
                 return Ok(());
             }
-            Ok(said) => answers(kind, right, &said),
+            Ok(said) => answers(posed.kind, right, &said),
             Err(BoardError::NoAnswer { heard, .. }) if heard.damaged == 0 && self.had_it_each_time() => {
-                return Err(unanswered(rule, kind, answer(right)));
+                return Err(unanswered(rule, posed, answer(right)));
             }
             Err(BoardError::Unanswered { had: Had::Counted, .. }) => {
-                return Err(unanswered(rule, kind, answer(right)));
+                return Err(unanswered(rule, posed, answer(right)));
             }
             Err(error) => return Err(End::board(CheckName::Rules, &error)),
         };
-        Err(broken(rule, kind, right, found))
+        Err(broken(rule, posed, right, found))
     }
 
     /// Whether the board answers and had every packet that was sent to it: only then is it known what it did not answer.
@@ -214,6 +219,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     ) -> Result<(), End> {
         let changes = self.run.board.repeated_changes();
         let said = self.run.board.ask(kind, payload);
+        let posed = self.posed();
         let right = Response::Refused(Refusal { code, kind: kind.code(), detail });
         let is_unanswered = matches!(said, Err(BoardError::NoAnswer { .. } | BoardError::Unanswered { .. }));
         if is_unanswered
@@ -222,9 +228,9 @@ impl<'a, 'run> Rules<'a, 'run> {
         {
             // It is known what happened to each copy of this request.
             self.run.board.excuse_changes(changes);
-            return Err(broken(rule, kind, answer(&right), Answer::Taken {}));
+            return Err(broken(rule, posed, answer(&right), Answer::Taken {}));
         }
-        self.judge(rule, kind, said, &right)
+        self.judge(rule, posed, said, &right)
     }
 
     /// What `marked` came to, a request with something that must be ignored. If it broke a rule, and does so without that as
@@ -262,7 +268,7 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     fn bytes_replied(&mut self, rule: Rule, kind: Kind, payload: &[u8], reply: Vec<u8>) -> Result<(), End> {
         let said = self.run.board.ask(kind, payload);
-        self.judge(rule, kind, said, &Response::Replied(reply))
+        self.judge(rule, self.posed(), said, &Response::Replied(reply))
     }
 
     /// Configures the board for small frames of `rows` rows.
@@ -342,14 +348,14 @@ fn counter_wrong(rule: Option<Rule>, counter: Counter, counted: u32, right: u32)
     Finding::CounterWrong { counter, counted, right, rule }
 }
 
-fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {
-    End::failed(CheckName::Rules, rule_broken(rule, kind, right, found))
+fn broken(rule: Rule, posed: impl Into<Posed>, right: Answer, found: Answer) -> End {
+    End::failed(CheckName::Rules, rule_broken(rule, posed, right, found))
 }
 
 /// An answer that must be given did not come, however often it was asked for. Silence alone makes no board wrong, since a
 /// link can lose the same packet each time, or all packets for a while.
-fn unanswered(rule: Rule, kind: Kind, right: Answer) -> End {
-    doubted(rule_broken(rule, kind, right, Answer::Nothing {}), Doubt::AnswerLost {})
+fn unanswered(rule: Rule, posed: impl Into<Posed>, right: Answer) -> End {
+    doubted(rule_broken(rule, posed, right, Answer::Nothing {}), Doubt::AnswerLost {})
 }
 
 /// Something was `found` that the link may have caused each time.
@@ -358,8 +364,9 @@ fn doubted(found: Finding, doubt: Doubt) -> End {
     End::error(CheckName::Rules, Cause::Station, finding)
 }
 
-fn rule_broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> Finding {
-    Finding::RuleBroken { rule, request: kind.to_string(), right, found }
+pub(super) fn rule_broken(rule: Rule, posed: impl Into<Posed>, right: Answer, found: Answer) -> Finding {
+    let Posed { kind, asked } = posed.into();
+    Finding::RuleBroken { rule, request: kind.to_string(), right, found, asked }
 }
 
 fn other_row(rule: Rule, row: usize, frame: u16, differs: Vec<RowPart>) -> End {

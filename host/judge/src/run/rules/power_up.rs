@@ -50,10 +50,12 @@ impl Rules<'_, '_> {
     fn waited_for(&mut self, commit: Commit) -> Result<(), End> {
         self.replied(Rule::Generation, &Request::Commit(commit), vec![commit.generation])?;
         if self.capabilities.table_banks > 1 {
+            self.pending = Some(commit.first_frame);
             for frame in (0..u16::BITS).map(|bit| commit.first_frame ^ 1 << bit) {
                 let place = RowPlace { frame, ..self.place(0) };
                 self.row_refused(Rule::NotReady, place, RefusalCode::NotReady)?;
             }
+            self.pending = None;
         }
         // So that another commit may wait.
         self.drop_rows()

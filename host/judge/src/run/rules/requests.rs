@@ -43,12 +43,14 @@ impl Rules<'_, '_> {
 
     /// An echo must be exact: it has no fields after which more bytes might follow.
     fn echo_of_nothing(&mut self) -> Result<(), End> {
-        match self.run.board.ask(Kind::Echo, &[]) {
+        let said = self.run.board.ask(Kind::Echo, &[]);
+        let posed = self.posed();
+        match said {
             Ok(Response::Replied(more)) if !more.is_empty() => {
                 let nothing = Response::Replied(Vec::new());
-                Err(broken(Rule::Skipped, Kind::Echo, answer(&nothing), answer(&Response::Replied(more))))
+                Err(broken(Rule::Skipped, posed, answer(&nothing), answer(&Response::Replied(more))))
             }
-            said => self.judge(Rule::Skipped, Kind::Echo, said, &Response::Replied(Vec::new())),
+            said => self.judge(Rule::Skipped, posed, said, &Response::Replied(Vec::new())),
         }
     }
 

@@ -127,7 +127,7 @@ impl Rules<'_, '_> {
             Response::Replied(_) => Response::Replied(Vec::new()),
             refused => refused,
         });
-        self.judge(Rule::Held, Kind::Hello, said, &Response::Replied(Vec::new()))?;
+        self.judge(Rule::Held, Kind::Hello.into(), said, &Response::Replied(Vec::new()))?;
         // Until this host has the board back, it is held by a host that is none: nothing may come in between.
         let held = Answer::Refused { code: RefusalCode::Held as u8, detail: 0 };
         self.greet_by(Board::take_back).map_err(|error| match error {
@@ -284,7 +284,7 @@ impl Rules<'_, '_> {
         self.run.board.close_session().during(CheckName::Rules)?;
         let said = self.run.board.ask_in_session(session, Kind::Status, &[0]);
         let refusal = Refusal { code: RefusalCode::Session, kind: Kind::Status.code(), detail: 0 };
-        self.judge(Rule::Closed, Kind::Status, said, &Response::Refused(refusal))
+        self.judge(Rule::Closed, self.posed(), said, &Response::Refused(refusal))
     }
 
     /// Drops configuration and tables, which must leave the session open.
@@ -364,7 +364,7 @@ impl Rules<'_, '_> {
             }
             refused => refused,
         });
-        self.judge(rule, Kind::Records, said, &Response::Replied(vec![0; Records::HEAD]))
+        self.judge(rule, self.posed(), said, &Response::Replied(vec![0; Records::HEAD]))
     }
 }
 

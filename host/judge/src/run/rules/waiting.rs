@@ -167,9 +167,9 @@ impl Rules<'_, '_> {
         {
             let ended = told.state == BurstState::Ended;
             let right = Answer::Burst { ended, records: told.frames.len() };
-            return Err(broken(rule, Kind::Records, right, found));
+            return Err(broken(rule, self.posed(), right, found));
         }
-        self.judge(rule, Kind::Records, said, &Response::Replied(right))
+        self.judge(rule, self.posed(), said, &Response::Replied(right))
     }
 
     /// Requests for records before or beyond `frames` must be refused.

@@ -1,7 +1,5 @@
 //! How far ahead of the rows that it has a board lets the host send (WIRE.md, 4).
 
-use halfrow_protocol::Kind;
-
 use super::counts::equal;
 use super::rows::TRIES;
 use super::{Rules, counter_wrong, doubted};
@@ -42,20 +40,20 @@ impl Rules<'_, '_> {
     /// After a RESET no row is inside, so the window must be as far ahead as there are input banks.
     pub(super) fn window(&mut self) -> Result<(), End> {
         let rows = self.run.board.credit_after_reset().during(CheckName::Rules)?;
-        self.must_have_credit(Kind::Reset, rows)
+        self.must_have_credit(rows)
     }
 
     /// After a RESET to a smaller number the window must be as far ahead of that one as there are input banks.
     pub(super) fn window_goes_down(&mut self) -> Result<(), End> {
         let rows = self.run.board.credit_after_reset_to(SMALLER).during(CheckName::Rules)?;
-        self.must_have_credit(Kind::Reset, rows)
+        self.must_have_credit(rows)
     }
 
     /// The refusal of a row, the last answer, must name the same window as the answer to the RESET before it: no row has entered.
     pub(super) fn window_stays(&mut self) -> Result<(), End> {
         let board = &self.run.board;
         let rows = board.answered().window.saturating_sub(board.acknowledged());
-        self.must_have_credit(Kind::RowIn, rows)
+        self.must_have_credit(rows)
     }
 
     /// An acknowledgement of rows that the board has not sent must count as far as it has sent them. The rows after it begin behind
@@ -88,12 +86,13 @@ impl Rules<'_, '_> {
         Ok(Alone { before, after, once })
     }
 
-    /// After a RESET the board must give credit for as many rows as it has input banks. It gave it for `rows` in its answer to
-    /// a request of `kind`.
-    fn must_have_credit(&mut self, kind: Kind, rows: u32) -> Result<(), End> {
+    /// After a RESET the board must give credit for as many rows as it has input banks, but for none beyond the last number. It
+    /// gave it for `rows` in its last answer.
+    fn must_have_credit(&mut self, rows: u32) -> Result<(), End> {
         let banks = self.capabilities.row_banks_in.into();
-        if rows != banks {
-            return Err(End::failed(CheckName::Rules, window_wrong(kind, banks, rows)));
+        let right = (u32::MAX - self.run.board.acknowledged()).min(banks);
+        if rows != right {
+            return Err(End::failed(CheckName::Rules, window_wrong(self.posed(), right, rows)));
         }
         self.right += 1;
         Ok(())

@@ -100,6 +100,7 @@ impl Rules<'_, '_> {
         let other = write(&OTHER);
         for session in others(self.run.board.session()) {
             let said = self.run.board.ask_in_session(session, other.kind(), &payload(&other));
+            let posed = self.posed();
             let refusal = Refusal { code: RefusalCode::Session, kind: other.kind().code(), detail: 0 };
             // Read first: a board that carries the packet out may answer as in its own session, which is then not taken
             // for an answer.
@@ -109,7 +110,7 @@ impl Rules<'_, '_> {
                 return kept;
             }
             // A link that broke meanwhile must not hide what was answered before.
-            self.judge(Rule::Session, other.kind(), said, &Response::Refused(refusal))?;
+            self.judge(Rule::Session, posed, said, &Response::Refused(refusal))?;
             kept?;
         }
         Ok(())
@@ -125,7 +126,7 @@ impl Rules<'_, '_> {
             // Whatever else the link did, only a packet that must have no effect can have written this.
             self.run.board.excuse_repeats().during(CheckName::Rules)?;
         }
-        self.judge(rule, READ.kind(), said, &Response::Replied(payload(&write(&KEPT))))
+        self.judge(rule, self.posed(), said, &Response::Replied(payload(&write(&KEPT))))
     }
 }
 

@@ -1,9 +1,8 @@
 //! Looks at the window of a board that refused a row as beyond it, or did not bring one back however often it was sent.
 
-use halfrow_protocol::Kind;
-
 use crate::result::{Answer, Finding, Rule};
 use crate::run::findings::End;
+use crate::run::rules::{Posed, rule_broken};
 use crate::run::steps::Run;
 
 /// How often the window must be wrong.
@@ -29,15 +28,15 @@ impl Run<'_> {
             .collect();
         match credits.last() {
             Some(&rows) if credits.len() == TIMES as usize => {
-                End::failed(end.check(), window_wrong(Kind::Reset, banks, rows))
+                End::failed(end.check(), window_wrong(self.board.last_request(), banks, rows))
             }
             _ => end,
         }
     }
 }
 
-/// After a RESET the board gives credit for `rows`, in its answer to a request of `kind`, instead of one for each of its `banks`.
-pub(crate) fn window_wrong(kind: Kind, banks: u32, rows: u32) -> Finding {
-    let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });
-    Finding::RuleBroken { rule: Rule::Window, request: kind.to_string(), right, found }
+/// After a RESET the board gives credit for `rows`, in its answer to a request, instead of for `right`.
+pub(crate) fn window_wrong(posed: impl Into<Posed>, right: u32, rows: u32) -> Finding {
+    let (right, found) = (Answer::Credit { rows: right }, Answer::Credit { rows });
+    rule_broken(Rule::Window, posed, right, found)
 }

@@ -1,11 +1,13 @@
 //! An example of every finding and every defect, for the page of codes and for tests.
 
+mod rules;
+
 use super::{
-    Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, ContentKind, Corner, Counter,
-    Counting, Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, KeptRow, KernelSwitch,
-    LateRows, LineFault, MadeAs, MadeWith, Memory, MissingRow, NamedBlanking, NoBurst, NotExercised,
-    NumberedRow, PlacedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, SampleBus,
-    SampleLines, StaleFrames, Streamed, Suspect,
+    Account, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, ContentKind, Corner, Counter, Counting,
+    Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, KeptRow, KernelSwitch, LateRows,
+    LineFault, MadeAs, MadeWith, Memory, MissingRow, NamedBlanking, NoBurst, NotExercised, NumberedRow,
+    PlacedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, SampleBus, SampleLines, StaleFrames,
+    Streamed, Suspect,
 };
 use crate::compare::Difference;
 use crate::verdict::Verdict;
@@ -20,7 +22,7 @@ pub fn findings() -> Vec<Finding> {
 #[must_use]
 pub fn findings_with_verdicts() -> Vec<(Option<Verdict>, Finding)> {
     let with = |verdict| move |finding| (verdict, finding);
-    let of_the_board = of_the_board().into_iter().chain(on_entry_and_at_speed()).chain(on_rules());
+    let of_the_board = of_the_board().into_iter().chain(on_entry_and_at_speed()).chain(rules::on_rules());
     let all = right().into_iter().chain(of_the_board.map(with(Some(Verdict::Fail))));
     all.chain(unjudged().map(with(Some(Verdict::Error)))).collect()
 }
@@ -114,16 +116,6 @@ fn late_row() -> Finding {
         last: 973,
         claimed: 972,
     })
-}
-
-/// Findings on the rules of the wire.
-fn on_rules() -> [Finding; 1] {
-    [Finding::RuleBroken {
-        rule: Rule::CommitCrc,
-        request: "COMMIT".to_owned(),
-        right: Answer::Refused { code: 9, detail: 1 },
-        found: Answer::Replied { payload: "55".to_owned() },
-    }]
 }
 
 /// A bit that was flipped on its way in.
