@@ -173,6 +173,7 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=counted-close",
         "a greeting must open the next session",
     ),
+    fails("a window of 16 bits", ",fault=unkept-rule,instead=short-window", "next_row 65534"),
     fails(
         "gaps that go on in the next frame",
         ",fault=unkept-rule,instead=gaps-go-on",

@@ -225,14 +225,6 @@ impl Board {
         Ok(window.saturating_sub(next_row))
     }
 
-    /// Drops the rows inside the board, which then waits for row sequence number `next_row`, a number not sent yet.
-    ///
-    /// # Errors
-    /// [`BoardError`] when the board refuses or does not answer.
-    pub(crate) fn go_on_from(&mut self, next_row: u32) -> Result<(), BoardError> {
-        self.reset_to(Reset { level: ResetLevel::Rows, next_row }, Step::Request)
-    }
-
     /// The board's counters, and the window in the same answer.
     ///
     /// # Errors

@@ -287,12 +287,7 @@ impl Board {
     fn reset(&mut self, level: ResetLevel, step: Step) -> Result<(), BoardError> {
         // Beyond every row that can be under way: credit is never further ahead than the board has banks.
         let next_row = self.conversation.credit();
-        self.reset_to(Reset { level, next_row }, step)
-    }
-
-    fn reset_to(&mut self, reset: Reset, step: Step) -> Result<(), BoardError> {
-        let level = reset.level;
-        reset_to(&mut self.conversation, reset, step)?;
+        reset_to(&mut self.conversation, Reset { level, next_row }, step)?;
         if level == ResetLevel::Tables {
             self.shapes = [None; 2];
         }

@@ -354,7 +354,7 @@ impl Rules<'_, '_> {
         for bit in FAR..u32::BITS {
             let next_row = (1 << bit) - 2;
             if next_row > self.run.board.credit() {
-                self.run.board.go_on_from(next_row).during(CheckName::Rules)?;
+                self.window_goes_up(next_row)?;
                 self.right_frames(&[FRAME])?;
                 self.counted()?;
             }
@@ -364,7 +364,7 @@ impl Rules<'_, '_> {
 
     /// The last numbers of all. The window does not wrap, so the greatest one never gets credit.
     pub(super) fn last_numbers(&mut self) -> Result<(), End> {
-        self.run.board.go_on_from(u32::MAX - self.height as u32).during(CheckName::Rules)?;
+        self.window_goes_up(u32::MAX - self.height as u32)?;
         self.right_frames(&[FRAME])?;
         self.counted()?;
         self.row_refused(Rule::Credit, self.place(0), RefusalCode::Credit)

@@ -49,6 +49,12 @@ impl Rules<'_, '_> {
         self.must_have_credit(rows)
     }
 
+    /// After a RESET to `next_row`, a number not sent yet, the window must be as far ahead of that one as there are input banks.
+    pub(super) fn window_goes_up(&mut self, next_row: u32) -> Result<(), End> {
+        let rows = self.run.board.credit_after_reset_to(next_row).during(CheckName::Rules)?;
+        self.must_have_credit(rows)
+    }
+
     /// The refusal of a row, the last answer, must name the same window as the answer to the RESET before it: no row has entered.
     pub(super) fn window_stays(&mut self) -> Result<(), End> {
         let board = &self.run.board;
