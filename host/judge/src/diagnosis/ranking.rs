@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::hypothesis::{Hypothesis, Score};
 use super::witnesses::Witnesses;
-use crate::result::{Account, Defect, Reading, Suspect, wording};
+use crate::result::{Account, CONVINCING, Defect, Reading, Suspect, wording};
 
 /// Differing rows on which every hypothesis is tried.
 const SCREENED: usize = 48;
@@ -19,8 +19,6 @@ const EXAMINED: usize = 192;
 pub(super) const NAMED: usize = 3;
 /// The least share that a suspect must explain.
 const LEAST_SHARE: f64 = 0.2;
-/// The least share that the first suspect must explain.
-const CONVINCING: f64 = 0.5;
 
 /// A defect and its score.
 #[derive(Clone)]
@@ -78,7 +76,7 @@ pub(super) fn suspects(ranked: &[Ranked], summary: impl FnOnce() -> Suspect) -> 
     let (defects, others) = entries(ranked.iter().take(named), alike);
     let mut suspects: Vec<_> = defects
         .iter()
-        .filter(|candidate| candidate.score.share() >= LEAST_SHARE)
+        .filter(|candidate| candidate.is_worth_naming())
         .map(|candidate| suspect(candidate, others))
         .collect();
     if suspects.first().is_none_or(|best| best.explained < CONVINCING) {
@@ -125,6 +123,13 @@ impl Ranked {
             ) if (&*node, &*weight) == (other, of) => Some((reading, *bit)),
             _ => None,
         }
+    }
+
+    /// Whether it explains most of the differences or, of fewer, more than it would spoil.
+    fn is_worth_naming(&self) -> bool {
+        let Score { explained, contradicted, .. } = self.score;
+        let share = self.score.share();
+        share >= CONVINCING || share >= LEAST_SHARE && contradicted < explained
     }
 
     fn explains_less_than(&self, best: Option<&Self>) -> bool {

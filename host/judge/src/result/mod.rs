@@ -70,6 +70,7 @@ pub use rule::{Answer, MissingRow, NumberedRow, PlacedRow, RepeatedRow, RowPart,
 pub(crate) use sha256::little_endian;
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};
+pub(crate) use suspect::CONVINCING;
 pub(crate) use suspect::Lead;
 pub use suspect::{Account, Shortfall, Suspect};
 pub use within::{CoveragePoint, WithinPart, WithinReport};

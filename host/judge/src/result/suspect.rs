@@ -16,6 +16,9 @@ pub struct Suspect {
     pub explained: f64,
 }
 
+/// The least share of the samples that the first suspect must explain to be believed.
+pub(crate) const CONVINCING: f64 = 0.5;
+
 /// How well a defect explains what was seen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "of", rename_all = "kebab-case")]
@@ -156,7 +159,10 @@ impl Suspect {
     /// What a technician should do with this board.
     #[must_use]
     pub fn technician(&self) -> String {
-        wording::technician(&self.defect)
+        match self.account {
+            Account::Samples { .. } if self.explained < CONVINCING => wording::if_unsure(&self.defect),
+            _ => wording::technician(&self.defect),
+        }
     }
 }
 

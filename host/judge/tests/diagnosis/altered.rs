@@ -7,7 +7,7 @@ use halfrow_model::{Frame, Kernel, RowFactor, TableSet, correct, correct_row, so
 use crate::bench::{Bench, CaseInput, WHITE, fault, narrow, off_centre, wide};
 
 /// The suspects for a board that gives `found`, frame by frame.
-fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {
+pub(crate) fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {
     bench.judge(&seen(bench, found))
 }
 

@@ -15,4 +15,5 @@ mod settings;
 mod share;
 mod tables;
 mod taps;
+mod unsure;
 mod words;

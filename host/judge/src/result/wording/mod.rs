@@ -123,6 +123,12 @@ pub fn technician(defect: &Defect) -> String {
     words(defect).technician.to_owned()
 }
 
+/// The same where the defect explains so little that no part is given up for it.
+pub(super) fn if_unsure(defect: &Defect) -> String {
+    let technician = words(defect).technician;
+    if technician == MEMORY { REPORT } else { technician }.to_owned()
+}
+
 #[expect(clippy::too_many_lines, reason = "one arm a defect")]
 fn words(defect: &Defect) -> Words {
     match defect {
