@@ -35,7 +35,7 @@ pub use crate::core::{
     Core, Entering, GridShape, Kernel, Leaving, NODES, Node, RowBinding, RowValues, UNSTRETCHED, Weight,
 };
 pub use crate::depth::Depth;
-pub use crate::faults::{BoardFault, Conduct, FAULTS, Streamed, catalogue};
+pub use crate::faults::{BoardFault, Conduct, FAULTS, Misread, Streamed, catalogue};
 pub use crate::options::{BurstBuild, OptionError, Options, TapCount};
 pub use crate::player::{PlayError, Player, RowIn};
 pub use crate::settings::{Settings, SettingsError};

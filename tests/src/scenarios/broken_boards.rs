@@ -201,6 +201,37 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "no answer to ECHO",
     ),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
+    fails("weights without their sign", ",fault=misread", "the sign of the kernel's weights"),
+    fails(
+        "weights rounded toward zero",
+        ",fault=misread,instead=weights-toward-zero",
+        "the rounding of interpolated weights, toward zero",
+    ),
+    fails(
+        "source coordinates that are not rounded",
+        ",fault=misread,instead=unrounded-source",
+        "the rounding of source coordinates",
+    ),
+    fails("the node after the right one", ",fault=misread,instead=next-node", "one node ahead"),
+    fails(
+        "an edge of the wrong colour",
+        ",fault=misread,instead=nearest-edge",
+        "the samples beyond the row's ends",
+    ),
+    fails("pairs in reverse", ",fault=misread,instead=reversed-pairs", "each pair's bytes reversed"),
+    fails(
+        "entries in reverse",
+        ",fault=misread,instead=reversed-entries",
+        "row table, the order of its bytes",
+    ),
+    expect(
+        "ERROR",
+        3,
+        "long runs that are unstuffed wrong",
+        ",fault=misread,instead=long-runs",
+        SMALLER,
+        "because the board counts each as a damaged packet",
+    ),
     expect(
         "ERROR",
         6,

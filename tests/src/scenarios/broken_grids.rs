@@ -156,6 +156,12 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     ),
     fails("grids that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted behind a grid", ",fault=hidden-pause", "a maximum latency of"),
+    fails("weights without their sign behind a grid", ",fault=misread", "the sign of the kernel's weights"),
+    fails(
+        "source coordinates of a grid that are not rounded",
+        ",fault=misread,instead=unrounded-source",
+        "the rounding of source coordinates",
+    ),
     expect(
         "ERROR",
         6,

@@ -70,6 +70,36 @@ fn a_silence_tells_what_the_board_counts_and_how_long_the_request_is() {
     assert!(lost.contains("check how the board takes it in"), "{lost}");
 }
 
+/// The board counts what it cannot unstuff, and answers whatever it can.
+#[test]
+fn a_receiver_that_damages_the_same_packet_each_time_is_told_from_a_poor_cable() {
+    let report = System::TINY.judge(",fault=misread,instead=long-runs");
+    let told = told(&report);
+    for clause in [
+        "no answer to ECHO with 256 bytes in 8 tries, because the board counts each as a damaged packet",
+        "how the board undoes the stuffing of long packets",
+    ] {
+        assert!(told.contains(clause), "{told}");
+    }
+}
+
+/// The ninth try comes through, so that it was no matter of what the packet holds.
+#[test]
+fn a_link_that_damages_long_packets_to_the_board_for_a_while_is_not_acquitted() {
+    let candidate = Altered::new(&Options::default(), |_, packet| vec![packet]).candidate();
+    let mut damaged = 0;
+    let link = Through::boxed(candidate.link, move |link, out, back, wait| {
+        let mut out = out.to_vec();
+        if out.len() > 4080 && damaged < 8 {
+            damaged += 1;
+            out[100] ^= 2;
+        }
+        link.exchange(&out, back, wait)
+    });
+    let told = told(&System::TINY.judge_candidate(Candidate { link, ..candidate }));
+    assert!(told.contains("though the board had answered before; check the cable"), "{told}");
+}
+
 /// Noise lets short packets through and long ones not.
 #[test]
 fn a_link_that_damages_long_packets_is_not_acquitted() {

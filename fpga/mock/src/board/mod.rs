@@ -20,7 +20,7 @@ use halfrow_protocol::message::{
 use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Packet};
 
 use crate::burst::Bursts;
-use crate::faults::{BoardFault, Conduct};
+use crate::faults::{BoardFault, Conduct, Misread};
 use crate::options::{OptionError, Options};
 use crate::player::Player;
 use crate::tables::Tables;
@@ -91,6 +91,9 @@ impl Board {
         let mut bytes = &*bytes;
         while let Some(packet) = decoder.next(&mut bytes) {
             match packet {
+                Ok(packet) if self.misreads(Misread::LongRuns) && has_long_run(packet.payload) => {
+                    self.damaged();
+                }
                 Ok(packet) => self.packet(&packet, now),
                 Err(Damage::Crc) => self.damaged(),
                 Err(_) => count(&mut self.status.framing_errors),
@@ -140,6 +143,11 @@ impl Board {
     /// Whether the board has this fault.
     fn has(&self, conduct: Conduct) -> bool {
         self.fault == Some(BoardFault::Conduct(conduct))
+    }
+
+    /// Whether a sentence was misread in this way.
+    fn misreads(&self, misread: Misread) -> bool {
+        self.fault == Some(BoardFault::Misread(misread))
     }
 
     /// Counts a packet of a session that is not open, and refuses it.
@@ -237,4 +245,9 @@ impl Endpoint for Board {
 /// Counts one more, up to the counter's limit.
 fn count(counter: &mut u32) {
     *counter = counter.saturating_add(1);
+}
+
+/// Whether there is no zero in 254 bytes of `payload`, whose stuffing then has a code that no zero follows.
+fn has_long_run(payload: &[u8]) -> bool {
+    payload.split(|&byte| byte == 0).any(|run| run.len() >= 254)
 }

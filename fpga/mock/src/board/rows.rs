@@ -6,7 +6,7 @@ use halfrow_protocol::message::{RefusalCode, Reply, RowIn, RowOut, RowPlace, Sta
 use halfrow_protocol::{Header, Kind, samples};
 
 use super::{Board, Refused, count};
-use crate::faults::Conduct;
+use crate::faults::{Conduct, Misread};
 use crate::player;
 
 /// Rows that wait to be played, and the row sequence numbers from which credit and acknowledgements follow.
@@ -227,6 +227,9 @@ impl Board {
         let settings = self.player.settings();
         let mut packed = Vec::with_capacity(samples::packed_length(row.samples.len()));
         samples::pack(&row.samples, &mut packed);
+        if self.misreads(Misread::ReversedPairs) {
+            packed.chunks_exact_mut(3).for_each(<[u8]>::reverse);
+        }
         let out = RowOut {
             place: RowPlace {
                 row_sequence: row.name.sequence,

@@ -9,7 +9,7 @@ use super::identity::{KERNEL_PORTS, ROW_FACTOR_PORTS};
 use super::{Board, Refused};
 use crate::core::{GridShape, Node};
 use crate::depth::Depth;
-use crate::faults::Conduct;
+use crate::faults::{Conduct, Misread};
 use crate::settings::{Settings, SettingsError};
 use crate::tables::{self, Port, TableError, Tables};
 
@@ -124,7 +124,7 @@ impl Board {
             Bank::Shadow => tables::Bank::Shadow,
             Bank::Active => tables::Bank::Active,
         };
-        Ok(match table {
+        let mut bytes: Vec<u8> = match table {
             Table::RowFactors | Table::Grid => (start..end)
                 .filter_map(|index| self.tables.entry(bank, index, Port::ReadBack))
                 .flat_map(u32::to_le_bytes)
@@ -134,7 +134,12 @@ impl Board {
                 let nodes = kernel.nodes.iter().take(end).skip(start);
                 nodes.flat_map(Node::words).flat_map(i16::to_le_bytes).collect()
             }
-        })
+        };
+        if self.misreads(Misread::ReversedEntries) {
+            let word = if table == Table::Kernel { 2 } else { 4 };
+            bytes.chunks_exact_mut(word).for_each(<[u8]>::reverse);
+        }
+        Ok(bytes)
     }
 
     pub(super) fn commit(&mut self, commit: &Commit) -> Result<(), Refused> {

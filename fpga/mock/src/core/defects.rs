@@ -1,7 +1,9 @@
 //! What a fault does to the core's wires.
 
-use super::weights::ROUNDING;
+use super::source::DROPPED_HALF;
+use super::weights::{ROUNDING, Weighing};
 use super::window::TAPS;
+use crate::faults::Misread;
 
 /// Lines of a bus that are stuck at 0 or at 1; none by default.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +64,12 @@ pub(crate) struct CoreDefects {
     pub(crate) rounding: i32,
     /// A tap that does not carry its own sample.
     pub(crate) dead_tap: Option<DeadTap>,
+    /// Added to a source coordinate before its last bits are dropped.
+    pub(crate) source_rounding: u64,
+    /// How weights come from the kernel.
+    pub(crate) weighing: Weighing,
+    /// Whether the nearest sample stands in beyond a row's ends, whatever its colour.
+    pub(crate) nearest_edge: bool,
     /// Pixel clocks by which the pipeline is longer than it claims to be.
     pub(crate) extra_delay: u32,
 }
@@ -71,6 +79,18 @@ impl CoreDefects {
     #[inline]
     pub(crate) fn taps(&self, taps: [i32; TAPS]) -> [i32; TAPS] {
         self.dead_tap.map_or(taps, |dead| dead.apply(taps))
+    }
+
+    /// Does what a misread sentence says, as far as it is about the core.
+    pub(crate) fn misread(&mut self, misread: Misread) {
+        match misread {
+            Misread::UnsignedWeights => self.weighing = Weighing::Unsigned,
+            Misread::WeightsTowardZero => self.weighing = Weighing::TowardZero,
+            Misread::NextNode => self.weighing = Weighing::NextNode,
+            Misread::UnroundedSource => self.source_rounding = 0,
+            Misread::NearestEdge => self.nearest_edge = true,
+            Misread::ReversedPairs | Misread::ReversedEntries | Misread::LongRuns => {}
+        }
     }
 
     /// The output for a weighted sum.
@@ -87,6 +107,9 @@ impl Default for CoreDefects {
             tap_offset: 0,
             rounding: ROUNDING,
             dead_tap: None,
+            source_rounding: DROPPED_HALF,
+            weighing: Weighing::default(),
+            nearest_edge: false,
             extra_delay: 0,
         }
     }

@@ -4,7 +4,7 @@ use halfrow_conformance::material;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-use super::source::Source;
+use super::source::{DROPPED_HALF, Source};
 use super::values::{GridShape, RowValues, UNSTRETCHED};
 
 /// Frames of this geometry with this grid.
@@ -42,7 +42,7 @@ impl Case {
 
 /// S of a row's columns.
 fn coordinates(centre2: u16, values: &RowValues, width: u16) -> Vec<u64> {
-    let mut source = Source::new(centre2, values);
+    let mut source = Source::new(centre2, values, DROPPED_HALF);
     let columns = (0..width).map(|_| {
         let coordinate = source.coordinate();
         source.advance();
@@ -104,9 +104,21 @@ fn the_worked_example_holds() {
         [coordinates[0], coordinates[5], coordinates[32]],
         [2_393_939_968, 3_569_135_488, 9_928_351_744]
     );
-    let mut source = Source::new(127, &values);
+    let mut source = Source::new(127, &values, DROPPED_HALF);
     let position = (0..6).map(|_| source.advance()).last().unwrap();
     assert_eq!((position.n, position.fraction), (13, 108_921 - (13 << 13)));
+}
+
+/// Column 5 of the worked example of datapath 1: S = 280594744 is 68504.58 of 2^-13 column.
+#[test]
+fn a_source_that_is_not_rounded_is_one_less() {
+    let fraction = |rounding| {
+        let mut source = Source::new(63, &RowValues::from(14_648_488), rounding);
+        let position = (0..6).map(|_| source.advance()).last().unwrap();
+        assert_eq!(position.n, 8);
+        position.fraction
+    };
+    assert_eq!([fraction(DROPPED_HALF), fraction(0)], [68_505 - (8 << 13), 68_504 - (8 << 13)]);
 }
 
 /// Entries of 2^24 leave every column where it is, in every shape, and larger factors are cut to 2^24.

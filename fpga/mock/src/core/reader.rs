@@ -42,8 +42,13 @@ impl Reader {
     /// Starts to read a row whose first sample went to the address `base`, and loads the whole window.
     #[cold]
     pub(crate) fn start(binding: &RowBinding, base: usize, ring: &Ring, defects: &CoreDefects) -> Self {
-        let row = RowInRing { base, width: i32::from(binding.width), offset: defects.tap_offset };
-        let source = Source::new(binding.centre2, &binding.values);
+        let row = RowInRing {
+            base,
+            width: i32::from(binding.width),
+            offset: defects.tap_offset,
+            nearest_edge: defects.nearest_edge,
+        };
+        let source = Source::new(binding.centre2, &binding.values, defects.source_rounding);
         let window = Window::load(source.position().n, |column| row.sample(ring, column));
         let largest = i32::from(binding.depth.largest());
         Self { row, kernel: Arc::clone(&binding.kernel), largest, column: 0, source, window }
@@ -63,7 +68,7 @@ impl Reader {
         let taps = self.window.taps(other_colour == 1);
         let taps = defects.taps(taps);
         let x = ((other_colour as u32) << FRACTION_BITS) | position.fraction;
-        let sum = Weights::at(&self.kernel, x).sum(taps, defects.rounding);
+        let sum = Weights::at(&self.kernel, x, defects.weighing).sum(taps, defects.rounding);
         self.column += 1;
         Some(Leaving { sample: defects.output(sum, self.largest), column })
     }
@@ -75,6 +80,8 @@ struct RowInRing {
     base: usize,
     width: i32,
     offset: i32,
+    /// Whether the nearest sample stands in beyond the ends, whatever its colour.
+    nearest_edge: bool,
 }
 
 impl RowInRing {
@@ -82,7 +89,9 @@ impl RowInRing {
     #[inline]
     fn sample(&self, ring: &Ring, column: i32) -> u16 {
         let column = column + self.offset;
-        let inside = if column < 0 {
+        let inside = if self.nearest_edge {
+            column.clamp(0, self.width - 1)
+        } else if column < 0 {
             column & 1
         } else if column < self.width {
             column

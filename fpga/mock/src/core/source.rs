@@ -10,7 +10,7 @@ const STEP_MASK: u64 = (1 << 29) - 1;
 
 /// Fractional bits that are dropped before the kernel's position is formed, and half a unit of what remains.
 const DROPPED_BITS: u32 = 15;
-const DROPPED_HALF: u64 = 1 << (DROPPED_BITS - 1);
+pub(crate) const DROPPED_HALF: u64 = 1 << (DROPPED_BITS - 1);
 
 /// Fractional bits of the position: five choose the node, eight interpolate.
 pub(crate) const FRACTION_BITS: u32 = 13;
@@ -23,6 +23,8 @@ pub(crate) struct Source {
     step: u64,
     /// 2·G, the change from this step to the next within a segment.
     bend: u64,
+    /// Added to the coordinate before its last bits are dropped.
+    rounding: u64,
     /// Columns that remain of the segment.
     left: u32,
     /// The node at the end of the segment.
@@ -40,8 +42,9 @@ pub(crate) struct Position {
 }
 
 impl Source {
-    /// S[0] = 8·C·(2^24 − Q[0]) + 2^15·O, from twice the column of the centre and the row's values.
-    pub(crate) fn new(centre2: u16, values: &RowValues) -> Self {
+    /// S[0] = 8·C·(2^24 − Q[0]) + 2^15·O, from twice the column of the centre and the row's values. `rounding` is added to
+    /// every coordinate before its last bits are dropped.
+    pub(crate) fn new(centre2: u16, values: &RowValues, rounding: u64) -> Self {
         let first = values.factors.first().copied().unwrap_or(UNSTRETCHED);
         let shortfall = u64::from(UNSTRETCHED).wrapping_sub(first.into());
         let stretched = (8 * u64::from(centre2)).wrapping_mul(shortfall);
@@ -50,6 +53,7 @@ impl Source {
             coordinate: stretched.wrapping_add(moved) & COORDINATE_MASK,
             step: 0,
             bend: 0,
+            rounding,
             left: 0,
             node: 0,
             values: values.clone(),
@@ -79,7 +83,7 @@ impl Source {
 
     /// The position of the current column.
     pub(crate) fn position(&self) -> Position {
-        let rounded = ((self.coordinate + DROPPED_HALF) & COORDINATE_MASK) >> DROPPED_BITS;
+        let rounded = ((self.coordinate + self.rounding) & COORDINATE_MASK) >> DROPPED_BITS;
         let fraction = rounded as u32 & ((1 << FRACTION_BITS) - 1);
         Position { n: (rounded >> FRACTION_BITS) as i32, fraction }
     }

@@ -68,6 +68,7 @@ impl Defects {
             }
             Fault::LateSwap => burst.late_swap = true,
             Fault::HiddenPause { row } => burst.hidden_pause = Some(row),
+            Fault::Misread(misread) => core.misread(misread),
         }
         defects
     }

@@ -3,6 +3,7 @@
 mod conduct;
 mod defects;
 mod effect;
+mod misread;
 mod part;
 
 use halfrow_pipe::{Fault, FaultInfo, Parameter, Place, Range, ValueError, Values};
@@ -12,6 +13,7 @@ use crate::core::{NODES, Weight};
 pub use conduct::Conduct;
 pub(crate) use defects::Defects;
 pub use effect::Streamed;
+pub use misread::Misread;
 pub use part::BoardFault;
 
 /// The default is a row that small frames have too.
@@ -274,6 +276,17 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
         "in a burst, the output stands still for a clock in a row, which is not counted as a pause",
         &[ROW],
         |values| Ok(BoardFault::HiddenPause { row: values.whole("row")? }),
+    ),
+    fault(
+        "misread",
+        "the board does otherwise than a sentence of the pages says that define it",
+        &[Parameter::new(
+            "instead",
+            Range::Words(&Misread::NAMES),
+            Some("unsigned-weights"),
+            "what the board does instead",
+        )],
+        |values| Ok(BoardFault::Misread(values.choice("instead", &Misread::ALL)?)),
     ),
 ];
 

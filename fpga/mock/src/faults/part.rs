@@ -1,6 +1,6 @@
 //! The parts that can be broken.
 
-use super::Conduct;
+use super::{Conduct, Misread};
 use crate::core::Weight;
 
 /// A fault inside the board, and the part that it breaks.
@@ -128,4 +128,6 @@ pub enum BoardFault {
         /// The row.
         row: u16,
     },
+    /// The board does what a misread sentence says.
+    Misread(Misread),
 }

@@ -60,6 +60,34 @@ fn a_dead_tap_carries_another_taps_sample() {
     assert_eq!(shifted[..63], samples[1..]);
 }
 
+/// A weight of -1 that is taken as 65535 is nearly 4, and the next sample of the colour is one more.
+#[test]
+fn a_weight_without_its_sign_is_large() {
+    let least = constant(Node { g4: -1, ..Node::default() });
+    let samples: Vec<_> = (0..64).map(|column| column / 2).collect();
+    let larger: Vec<_> = samples.iter().map(|sample| sample + 4).collect();
+    assert_eq!(row_with(fault("misread", &[]), least, samples)[..62], larger[..62]);
+}
+
+/// Nothing is stretched, so that every output is at node 0 of a kernel whose node 1 gives the next sample of the colour.
+#[test]
+fn a_board_that_begins_at_the_next_node_gives_what_that_one_says() {
+    let mut kernel = constant(Node::default());
+    kernel.nodes[1].g4 = 1 << 14;
+    let samples = noise_row(0, 64);
+    let next = row_with(fault("misread", &[("instead", "next-node")]), kernel, samples.clone());
+    assert_eq!(next[..62], samples[2..]);
+}
+
+/// With a weight of 1 on R1, an output is G2 + R1 - R3. Left of column 0, column 1 must stand in for R1 and is R3 as well.
+#[test]
+fn the_nearest_sample_beyond_an_edge_has_the_other_colour() {
+    let slope = constant(Node { r1: 1 << 14, ..Node::default() });
+    let samples: Vec<_> = (0..64).map(|column| 1000 + 7 * (column % 2)).collect();
+    let row = row_with(fault("misread", &[("instead", "nearest-edge")]), slope, samples.clone());
+    assert_eq!((row[0], &row[1..63]), (993, &samples[1..63]));
+}
+
 #[test]
 fn a_late_board_is_one_clock_late_and_otherwise_right() {
     let samples = noise_row(0, 64);
@@ -74,6 +102,10 @@ fn faults_outside_the_core_leave_it_as_it_is() {
     let samples = noise_row(0, 64);
     for name in ["wrong-latency-claim", "wrong-datapath", "stale-table", "lost-row"] {
         assert_eq!(row_with(fault(name, &[]), hermite(), samples.clone()), samples, "{name}");
+    }
+    for instead in ["reversed-pairs", "reversed-entries", "long-runs"] {
+        let misread = fault("misread", &[("instead", instead)]);
+        assert_eq!(row_with(misread, hermite(), samples.clone()), samples, "{instead}");
     }
 }
 

@@ -64,6 +64,22 @@ pub enum BoardError {
         /// What the board counts of it.
         had: Had,
     },
+    /// Each try of a request reached the board damaged, by the board's own count, while it answered others.
+    #[error(
+        "no answer to {kind} with {} in {}, because the board counts each as a damaged packet, though it answered others at once \
+         and nothing came back damaged; check the cable and the rate, and then how the board undoes the stuffing of long packets, \
+         with 254 bytes and more without a zero (protocol/WIRE.md, section 1, and protocol/vectors)",
+        count(*.bytes, "byte"),
+        count(*.attempts, "try")
+    )]
+    DamagedEachTime {
+        /// The request.
+        kind: Kind,
+        /// Bytes of its payload.
+        bytes: usize,
+        /// Tries.
+        attempts: u32,
+    },
     /// The board's packets end without a zero.
     #[error(
         "the board sends its packets without the zero that must follow each of them, so that each is complete only when the next one \

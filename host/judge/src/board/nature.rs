@@ -80,6 +80,7 @@ impl BoardError {
                 Nature::of(Some(Shown::Answer), Station)
             }
             Self::Unanswered { .. }
+            | Self::DamagedEachTime { .. }
             | Self::TooPoor { .. }
             | Self::RowMissing { .. }
             | Self::Timeout { .. } => Nature::of(None, Station),

@@ -80,6 +80,12 @@ pub(super) struct Wiring {
     pub(super) rounding: i32,
     /// Added to the product between two nodes before its 8 fractional bits are dropped.
     pub(super) weight_rounding: i32,
+    /// Whether the product between two nodes loses its fraction toward zero instead of down.
+    pub(super) toward_zero: bool,
+    /// Whether weights are taken as numbers without a sign.
+    pub(super) unsigned_weights: bool,
+    /// Whether half of what remains is added to a source coordinate before its last bits are dropped.
+    pub(super) rounds_source: bool,
     /// Whether outputs below 0 become 0; otherwise they wrap.
     pub(super) clamps_low: bool,
     /// Whether outputs above 2^B − 1 become 2^B − 1; otherwise they wrap.
@@ -95,6 +101,9 @@ impl Default for Wiring {
         Self {
             rounding: 1 << 13,
             weight_rounding: 1 << 7,
+            toward_zero: false,
+            unsigned_weights: false,
+            rounds_source: true,
             clamps_low: true,
             clamps_high: true,
             dead_tap: None,
@@ -162,12 +171,11 @@ impl RowTables<'_> {
         let mut window: Option<Window> = None;
         (0..self.geometry.width())
             .map(|output| {
-                let source = self.source(output);
-                let column = source.column.rem_euclid(COLUMNS);
+                let (column, distance) = self.position(output, wiring);
+                let column = column.rem_euclid(COLUMNS);
                 let window = window.get_or_insert_with(|| Window::load(column, |m| read(m, output)));
                 window.follow(column, |m| read(m, output));
-                let position = (source.node << 8 | source.fraction as usize)
-                    ^ if wiring.other_colour { LEFT_OF_N } else { 0 };
+                let position = distance ^ if wiring.other_colour { LEFT_OF_N } else { 0 };
                 let taps = window.taps(position & LEFT_OF_N != 0);
                 wiring.output(self.kernel, position, taps, self.geometry.depth().max())
             })
@@ -182,9 +190,31 @@ impl RowTables<'_> {
         }
     }
 
+    /// n and x of the output at a column: the column at or left of its source, and the distance of the source from the base.
+    fn position(&self, column: usize, wiring: &Wiring) -> (i64, usize) {
+        if wiring.rounds_source {
+            let source = self.source(column);
+            return (source.column, source.node << 8 | source.fraction as usize);
+        }
+        let unrounded = match &self.stretch {
+            Stretch::Factor(entry) => {
+                let (centre2, entry) = (i64::from(self.centre2), i64::from(*entry));
+                ((centre2 << 24) + (2 * column as i64 - centre2) * entry) >> 12
+            }
+            Stretch::Grid(values) => (values.coordinate(column) >> 15).rem_euclid(COLUMNS << 13),
+        };
+        let n = unrounded >> 13;
+        let base = n - ((n ^ column as i64) & 1);
+        (n, (unrounded - (base << 13)) as usize)
+    }
+
     /// The output at one column of `input`.
     pub(super) fn output(&self, input: &[u16], column: usize) -> u16 {
-        let source = self.source(column);
+        self.output_of_taps(input, self.source(column))
+    }
+
+    /// The output whose taps and weights are those of `source`.
+    pub(super) fn output_of_taps(&self, input: &[u16], source: Source) -> u16 {
         let position = source.node << 8 | source.fraction as usize;
         let taps = std::array::from_fn(|tap| self.sample_of(input, source.base - 2 + tap as i64));
         Wiring::default().output(self.kernel, position, taps, self.geometry.depth().max())
@@ -209,9 +239,13 @@ impl Wiring {
     fn weights(&self, kernel: &Kernel, position: usize) -> [i32; 5] {
         let node = position >> 8 & 63;
         let fraction = (position & 255) as i32;
-        let (low, high) = (kernel.nodes()[node].map(i32::from), kernel.nodes()[node + 1].map(i32::from));
+        let weight = |word: i16| {
+            if self.unsigned_weights { word.cast_unsigned().into() } else { i32::from(word) }
+        };
+        let (low, high) = (kernel.nodes()[node].map(weight), kernel.nodes()[node + 1].map(weight));
         std::array::from_fn(|tap| {
-            low[tap] + (((high[tap] - low[tap]) * fraction + self.weight_rounding) >> 8)
+            let between = (high[tap] - low[tap]) * fraction + self.weight_rounding;
+            low[tap] + if self.toward_zero { between / 256 } else { between >> 8 }
         })
     }
 

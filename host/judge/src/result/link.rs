@@ -6,10 +6,11 @@ use super::{Finding, Problem};
 use crate::link::LineErrors;
 
 /// The codes of problems that a poor line can cause, or one at another rate.
-const OF_LINE: [&str; 9] = [
+const OF_LINE: [&str; 10] = [
     "link-broke",
     "no-answer",
     "request-never-answered",
+    "request-damaged-each-time",
     "not-a-board",
     "session-lost",
     "burst-begun-again",

@@ -53,6 +53,7 @@ pub use coverage::CoverageReport;
 pub use defect::{
     ClampEnd, ColumnParity, ContentKind, Counting, Defect, FlippedBit, Instead, KernelSwitch, LineFault,
     MadeAs, MadeWith, Memory, NamedBlanking, Reading, RowSource, SampleBus, SampleLines, StaleFrames,
+    TableWord, TableWords,
 };
 pub use document::{Document, Schema};
 pub use doubt::{BrokenOff, Doubt};

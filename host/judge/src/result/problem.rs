@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::codes::{self, Coded};
-use super::{Finding, wording};
+use super::{Defect, Finding, wording};
 use crate::words::sentence;
 
 /// Parameters, by name.
@@ -171,6 +171,14 @@ pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
     debug_assert!(!code.is_empty(), "every finding and every defect has a code");
     let parameters = value.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
     (code, parameters)
+}
+
+impl Defect {
+    /// Its code and its parameters.
+    #[must_use]
+    pub fn tagged(&self) -> (String, Parameters) {
+        tagged(self)
+    }
 }
 
 #[cfg(test)]

@@ -23,12 +23,12 @@ fn seen(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Cas
 }
 
 /// A frame's samples, each row made by `row` from its index.
-fn by_row(frame: &Frame, row: impl Fn(usize) -> Vec<u16>) -> Vec<u16> {
+pub(crate) fn by_row(frame: &Frame, row: impl Fn(usize) -> Vec<u16>) -> Vec<u16> {
     (0..frame.height()).flat_map(row).collect()
 }
 
 /// Part and place of the only suspect, which must explain everything.
-fn certain(suspects: &[Suspect]) -> (&str, String) {
+pub(crate) fn certain(suspects: &[Suspect]) -> (&str, String) {
     let [only] = suspects else { panic!("{suspects:#?}") };
     assert_eq!(only.explained, 1.0, "{only:#?}");
     (only.part(), only.place())
@@ -43,7 +43,7 @@ fn remade(bench: &Bench, input: &Frame, rows: impl Fn(usize) -> usize, generatio
 }
 
 /// The index of a frame's generation: frames 0 and 1 of the bench are made with the decoy.
-fn generation(frame: usize) -> usize {
+pub(crate) fn generation(frame: usize) -> usize {
     usize::from(frame > 1)
 }
 
@@ -123,11 +123,18 @@ fn exchanged_columns_are_named() {
     assert_eq!(certain(&suspects), ("colour", "the pairs of columns".to_owned()));
 }
 
-/// The output without its clamp, computed from the samples around the source (DATAPATH.md, "Output sample").
-fn sum(bench: &Bench, generation: usize, row: usize, input: &[u16], column: usize) -> i32 {
+/// The output without its clamp, computed from the samples around the source (DATAPATH.md, "Output sample"), or `aside` columns
+/// right of them.
+pub(crate) fn sum(
+    bench: &Bench,
+    generation: usize,
+    row: usize,
+    input: &[u16],
+    (column, aside): (usize, i64),
+) -> i32 {
     let Generation { tables, kernel, .. } = &bench.generations[generation];
     let source = source(&bench.geometry, tables.row_factor(row).unwrap(), column);
-    let tap = |tap: i64| i32::from(input[bench.geometry.sample_column(source.base - 2 + tap)]);
+    let tap = |tap: i64| i32::from(input[bench.geometry.sample_column(source.base + aside - 2 + tap)]);
     let nodes = [kernel.nodes()[source.node], kernel.nodes()[source.node + 1]];
     let weight = |index: usize| {
         let [low, high] = nodes.map(|node| i32::from(node[index]));
@@ -146,7 +153,7 @@ fn a_missing_clamp_is_named_with_its_end() {
         diagnose(bench, move |frame, input, _| {
             by_row(input, |row| {
                 let sums = (0..input.width())
-                    .map(|column| sum(bench, generation(frame), row, input.row(row), column));
+                    .map(|column| sum(bench, generation(frame), row, input.row(row), (column, 0)));
                 sums.map(|sum| if wraps(sum) { sum.rem_euclid(4096) } else { sum.clamp(0, 4095) } as u16)
                     .collect()
             })
@@ -291,6 +298,7 @@ fn what_nothing_explains_is_described() {
     });
     let first = &suspects[0];
     assert_eq!((first.part(), first.explained), ("unknown", 0.0));
+    assert!(first.designer().ends_with("*Golden values* of fpga/DATAPATH.md."), "{}", first.designer());
     for clause in ["in every row", "all in column 44", "all off by +1", "in 8 of 9 frames"] {
         assert!(first.evidence().contains(clause), "{}", first.evidence());
     }

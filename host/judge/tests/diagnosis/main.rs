@@ -8,6 +8,7 @@ mod altered;
 mod bench;
 mod grids;
 mod memory;
+mod misread;
 mod patterns;
 mod read_back;
 mod scenes;

@@ -2,7 +2,7 @@
 
 use halfrow::board::Table;
 use halfrow::diagnosis::read_back;
-use halfrow::result::{Defect, Suspect};
+use halfrow::result::{Defect, Suspect, TableWord};
 use halfrow::tables::Generation;
 use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, TableSet};
 
@@ -192,8 +192,52 @@ fn a_line_that_explains_one_word_of_two_is_not_named() {
     let tables = TableSet::from_units(geometry, &[a, b, a, a]).unwrap();
     let suspects = read(&tables, Table::RowFactors, &bytes(&[b, b + 3, a, a]));
     assert_eq!(suspects.len(), 1, "{suspects:?}");
-    let Defect::TableWordWrong { entry: 0, wrong: 2, .. } = suspects[0].defect else {
+    let Defect::TableWordWrong(TableWord { entry: 0, wrong: 2, .. }) = suspects[0].defect else {
         panic!("{suspects:?}")
     };
     assert_eq!(suspects[0].explained, 0.5);
+}
+
+/// A word of the row table has four bytes, one of the kernel two. The value of a palindrome says nothing.
+#[test]
+fn bytes_in_the_wrong_order_are_named_and_no_memory_is_blamed() {
+    let reversed = factors().iter().map(|factor| factor.swap_bytes()).collect::<Vec<_>>();
+    let nodes = read_nodes(|_, weights| *weights = weights.map(i16::swap_bytes));
+    let entries = read_grid(|_, entry| *entry = entry.swap_bytes());
+    for (suspects, table) in
+        [(read_factors(&reversed), "row table"), (nodes, "kernel memory"), (entries, "row table")]
+    {
+        assert_eq!(first(&suspects), (format!("{table}, the order of its bytes"), 1.0));
+        assert_eq!(suspects.len(), 1, "{suspects:#?}");
+        assert!(suspects[0].designer().contains("the lowest comes first"), "{}", suspects[0].designer());
+        assert!(suspects[0].technician().contains("try another board"), "{}", suspects[0].technician());
+    }
+    // Another word that is wrong is explained by no order.
+    let other =
+        reversed.iter().enumerate().map(|(row, factor)| factor ^ u32::from(row == 50)).collect::<Vec<_>>();
+    assert_eq!(first(&read_factors(&other)).0, "row table, 100 of its 100 words");
+}
+
+/// Cells break one by one, so that a board is given up for a few of them alone.
+#[test]
+fn many_words_without_a_common_cause_are_no_broken_memory() {
+    let told = |wrong: usize| {
+        let found: Vec<_> = factors()
+            .iter()
+            .enumerate()
+            .map(|(row, factor)| factor ^ if row < wrong { 5 << (row % 7) } else { 0 })
+            .collect();
+        let suspects = read_factors(&found);
+        assert_eq!(suspects.len(), 1, "{suspects:#?}");
+        (suspects[0].place(), suspects[0].evidence(), suspects[0].technician())
+    };
+    let (place, _, technician) = told(8);
+    assert_eq!(place, "row 0's factor, bits 0 and 2");
+    assert!(technician.contains("a memory block"), "{technician}");
+    let (place, evidence, technician) = told(9);
+    assert_eq!(place, "row table, 9 of its 100 words");
+    let first = factors()[0];
+    let told = format!("in entry 0, {} was read where {first} was uploaded", first ^ 5);
+    assert!(evidence.starts_with(&told) && evidence.contains("the first of 9 wrong words"), "{evidence}");
+    assert!(technician.contains("try another board"), "{technician}");
 }

@@ -10,6 +10,14 @@ use crate::board::deadlines::Step;
 use crate::board::received::Had;
 use crate::board::sent_requests::Outgoing;
 
+/// What became of the tries of a request that the board leaves unanswered while it answers others.
+enum Tries {
+    /// Nothing came damaged, and this is what the board counts of a further one.
+    Whole(Had),
+    /// The board counts each as a damaged packet.
+    Damaged,
+}
+
 impl Conversation {
     /// The `error` with which asking ended, or, if that is a silence which only this request meets, one that says so.
     pub(super) fn looked_into(&mut self, error: BoardError, asking: &Outgoing<'_>) -> BoardError {
@@ -17,8 +25,10 @@ impl Conversation {
         if self.session.number == 0 {
             return error;
         }
-        match self.leaves_only(asking) {
-            Ok(Some(had)) => BoardError::Unanswered { kind, bytes: asking.payload().len(), attempts, had },
+        let bytes = asking.payload().len();
+        match self.leaves_only(asking, attempts) {
+            Ok(Some(Tries::Whole(had))) => BoardError::Unanswered { kind, bytes, attempts, had },
+            Ok(Some(Tries::Damaged)) => BoardError::DamagedEachTime { kind, bytes, attempts },
             Err(why @ (BoardError::Stopped(_) | BoardError::Link { .. })) => why,
             Ok(None) | Err(_) => error,
         }
@@ -26,9 +36,9 @@ impl Conversation {
 
     /// Whether the board answers another request at once, then leaves this one unanswered again, and answers the other one
     /// again. A link that was broken for a while answers all three, one that brings late answers adds strays, and a noisy one,
-    /// which keeps long packets from getting through, damages them. Returns what the board counts of the request, if it is only this
-    /// one that it leaves.
-    fn leaves_only(&mut self, asking: &Outgoing<'_>) -> Result<Option<Had>, BoardError> {
+    /// which keeps long packets from getting through, damages those to the host too. Returns what became of the request, which
+    /// was tried `attempts` times before, if it is only this one that the board leaves.
+    fn leaves_only(&mut self, asking: &Outgoing<'_>, attempts: u32) -> Result<Option<Tries>, BoardError> {
         let strays = self.tally.strays;
         let before = self.answers_another(asking.kind())?;
         match self.ask_until_answered(asking, Step::Probe, |_| true) {
@@ -37,9 +47,15 @@ impl Conversation {
             Ok(_) => return Ok(None),
         }
         let after = self.answers_another(asking.kind())?;
-        let damaged = self.tally.damaged_in + u64::from(after.map_or(0, |status| status.damaged()));
-        let is_this_alone = self.tally.strays == strays && damaged == 0;
-        Ok(is_this_alone.then(|| Had::between(before, after)))
+        if self.tally.strays != strays || self.tally.damaged_in > 0 {
+            return Ok(None);
+        }
+        let [first, last] = [before, after].map(|status| status.map_or(0, |status| status.damaged()));
+        let is_each_damaged = first >= attempts && last.wrapping_sub(first) == 1;
+        Ok(match last {
+            0 => Some(Tries::Whole(Had::between(before, after))),
+            _ => is_each_damaged.then_some(Tries::Damaged),
+        })
     }
 
     /// Has the board answer another request than one of `kind`: its counters, if these are something else.

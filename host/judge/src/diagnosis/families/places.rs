@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use halfrow_protocol::samples::{pack, unpack};
+
 use crate::diagnosis::Case;
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
@@ -12,10 +14,16 @@ const ROWS: usize = 96;
 /// How many row banks a board may plausibly confuse, and by how many columns a row may plausibly be shifted.
 const NEAR: isize = 8;
 
-/// Rows exchanged, shifted sideways, or lost.
+/// Rows exchanged, shifted sideways, packed the other way round, or lost.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let shifts = (1..=NEAR).flat_map(|columns| [shifted(-columns), shifted(columns)]);
-    shifts.chain([pairs_exchanged()]).chain(lost(witnesses)).chain(exchanged(witnesses)).collect()
+    let packed = [false, true].map(pair_bytes_reversed);
+    shifts
+        .chain([pairs_exchanged()])
+        .chain(packed)
+        .chain(lost(witnesses))
+        .chain(exchanged(witnesses))
+        .collect()
 }
 
 fn exchanged<'a>(witnesses: &Witnesses<'a>) -> Option<Hypothesis<'a>> {
@@ -79,6 +87,21 @@ fn pairs_exchanged<'a>() -> Hypothesis<'a> {
     Hypothesis::new(Defect::ColumnPairsExchanged {}, |row| {
         let exchanged = |pair: &[u16]| pair.iter().rev().copied().collect::<Vec<_>>();
         Some(row.expected.chunks(2).flat_map(exchanged).collect::<Vec<_>>().into())
+    })
+}
+
+/// Pairs of outputs of which the highest byte is packed first.
+fn pair_bytes_reversed<'a>(first_in_front: bool) -> Hypothesis<'a> {
+    Hypothesis::new(Defect::PairBytesReversed { first_in_front }, move |row| {
+        let mut samples = row.expected.to_vec();
+        if first_in_front {
+            samples.chunks_exact_mut(2).for_each(<[u16]>::reverse);
+        }
+        let mut packed = Vec::new();
+        pack(&samples, &mut packed);
+        packed.chunks_exact_mut(3).for_each(<[u8]>::reverse);
+        unpack(&packed, &mut samples);
+        Some(samples.into())
     })
 }
 

@@ -14,7 +14,7 @@ use crate::tables::Generation;
 const WEIGHT_BITS: u32 = 16;
 const NODE_BITS: u32 = 7;
 
-/// Every data and address line of both tables, and row tables read from one entry too early or too late.
+/// Every data and address line of both tables, and entries read one too early or too late.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let Some(geometry) = witnesses.geometry() else { return Vec::new() };
     let ring = witnesses.case.ring;
@@ -26,6 +26,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .chain(StuckLine::all(address_bits(geometry.height())).map(move |line| factor_address(line, ring)))
         .chain([-1, 1].map(|distance| neighbour(distance, ring)))
         .chain(StuckLine::all(NODE_BITS).map(|line| node_address(&generations, line)))
+        .chain([-1, 1].map(|distance| node_neighbour(&generations, distance)))
         .chain(weights.map(|(tap, line)| weight_data(&generations, tap, line)))
         .collect()
 }
@@ -70,6 +71,14 @@ fn node_address<'a>(generations: &[&Generation], line: StuckLine) -> Hypothesis<
     let defect = Defect::KernelAddressStuck { bit: line.bit, value: line.value() };
     with_nodes(generations, defect, |nodes| {
         let read = |node: usize| nodes.get(line.carry(node as u32) as usize).copied().unwrap_or_default();
+        (0..NODES).map(read).collect()
+    })
+}
+
+/// Weights interpolated between nodes beside the right ones. Beyond the kernel's end its last node stands in.
+fn node_neighbour<'a>(generations: &[&Generation], distance: isize) -> Hypothesis<'a> {
+    with_nodes(generations, Defect::KernelAddressOff { nodes: distance }, |nodes| {
+        let read = |node: usize| nodes[node.saturating_add_signed(distance).min(NODES - 1)];
         (0..NODES).map(read).collect()
     })
 }

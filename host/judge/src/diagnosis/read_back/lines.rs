@@ -1,4 +1,4 @@
-//! Single lines of a table's memory that make many words wrong.
+//! Single lines of a table's memory that make many words wrong, and words whose bytes are in the wrong order.
 
 use halfrow_model::WEIGHT_NAMES;
 
@@ -61,7 +61,7 @@ fn lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
     let address = (0..address_bits(words.entries())).flat_map(move |bit| levels.map(|level| (bit, level)));
     data.flat_map(move |(bit, level)| data_lines(words, bit, level))
         .chain(address.map(move |(bit, level)| address_line(words, bit, level)))
-        .chain([shifted(words, -1), shifted(words, 1)])
+        .chain([shifted(words, -1), shifted(words, 1), bytes_reversed(words)])
         .chain(levels.map(move |level| all(words, level)))
 }
 
@@ -124,6 +124,15 @@ fn shifted(words: Words<'_>, distance: isize) -> Line<'_> {
             let entry = (index / words.per_entry()).checked_add_signed(distance)?;
             word_of(words, entry, index)
         }),
+    }
+}
+
+/// Words with their highest byte in front.
+fn bytes_reversed(words: Words<'_>) -> Line<'_> {
+    let unused = u32::BITS - 8 * words.word_bytes() as u32;
+    Line {
+        defect: Defect::TableBytesReversed { table: words.memory() },
+        read: Box::new(move |index| words.word(index).map(|word| word.swap_bytes() >> unused)),
     }
 }
 

@@ -6,7 +6,7 @@ use halfrow_model::{RowFactor, WEIGHT_NAMES};
 
 use crate::board::Table;
 use crate::compare::bits_in;
-use crate::result::{Account, Defect, Memory, Suspect};
+use crate::result::{Account, Defect, Memory, Suspect, TableWord, TableWords};
 use crate::tables::Generation;
 
 /// A table as words: row factors, grid entries, or the weights of one node after the other.
@@ -17,6 +17,9 @@ struct Words<'a> {
     grid_rows: Option<usize>,
     bytes: &'a [u8],
 }
+
+/// If more words than this are wrong, cells of their own are not to blame.
+const FEW_WORDS: usize = 8;
 
 /// A word that reads back with another value.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +33,7 @@ struct WrongWord {
 /// the likeliest first; none if they are equal.
 ///
 /// A single wrong entry is named with the bits that differ. Several are named by the line that would cause them, if a single line
-/// would, otherwise by their number and the first of them.
+/// would, or by the order of their bytes, otherwise by their number and the first of them.
 #[must_use]
 pub fn read_back(uploaded: &Generation, table: Table, found: &[u8]) -> Vec<Suspect> {
     let Generation { tables, kernel, .. } = uploaded;
@@ -54,7 +57,11 @@ pub fn read_back(uploaded: &Generation, table: Table, found: &[u8]) -> Vec<Suspe
         &[only] => vec![one_word(expected, only, 1)],
         [first, ..] => {
             let suspects = lines::suspects(expected, found, wrong.len());
-            if suspects.is_empty() { vec![one_word(expected, *first, wrong.len())] } else { suspects }
+            match wrong.len() {
+                _ if !suspects.is_empty() => suspects,
+                ..=FEW_WORDS => vec![one_word(expected, *first, wrong.len())],
+                many => vec![many_words(expected, *first, many)],
+            }
         }
     }
 }
@@ -136,7 +143,7 @@ fn one_word(words: Words<'_>, word: WrongWord, count: usize) -> Suspect {
             let (column, row) = (entry / rows, entry % rows);
             Defect::GridEntryReadsWrong { column, row, bits, uploaded, read, wrong: count }
         }
-        _ => Defect::TableWordWrong {
+        _ => Defect::TableWordWrong(TableWord {
             table: words.memory(),
             entry,
             weight: words.weight(word.index),
@@ -144,8 +151,23 @@ fn one_word(words: Words<'_>, word: WrongWord, count: usize) -> Suspect {
             uploaded,
             read,
             wrong: count,
-        },
+        }),
     };
     let account = Account::Words { wrong: count, explained: 1, others: 0 };
     Suspect { defect, account, explained: 1.0 / count as f64 }
+}
+
+/// The suspect for `wrong` words with no common cause, of which `first` is the first.
+fn many_words(words: Words<'_>, first: WrongWord, wrong: usize) -> Suspect {
+    let [uploaded, read] = [first.expected, first.found].map(|word| words.value(word));
+    let defect = Defect::TableWordsWrong(TableWords {
+        table: words.memory(),
+        entry: first.index / words.per_entry(),
+        weight: words.weight(first.index),
+        uploaded,
+        read,
+        wrong,
+        words: words.count(),
+    });
+    Suspect::explaining_nothing(defect)
 }

@@ -116,7 +116,7 @@ fn next(report: &Report) -> Markup {
             h2 { "What to do" }
             @if let Some(technician) = &bench { p.remedy { strong { "At the bench: " } (plain(technician)) } }
             @if let Some(remedy) = remedy {
-                p.remedy { @if bench.is_some() { strong { "Next: " } } (plain(asked(&remedy, has_maps))) }
+                p.remedy { @if bench.is_some() { strong { "Next: " } } (plain(&asked(&remedy, has_maps))) }
             }
             (suspects(&report.suspects, has_maps))
             p.explain { "More: " code { "halfrow explain " (codes.join(" ")) } }
@@ -136,12 +136,8 @@ pub(super) fn suspects(suspects: &[Suspect], has_maps: bool) -> Markup {
 }
 
 /// What the reader is asked to do, where it refers to the maps in words that suit this page.
-fn asked(asked: &str, has_maps: bool) -> &str {
-    match (asked == MAPS, has_maps) {
-        (false, _) => asked,
-        (true, true) => "Look at the difference maps below.",
-        (true, false) => NO_MAPS,
-    }
+fn asked(asked: &str, has_maps: bool) -> String {
+    asked.replace(MAPS, if has_maps { "Look at the difference maps below." } else { NO_MAPS })
 }
 
 fn suspect(suspect: &Suspect, has_maps: bool) -> Markup {
@@ -153,7 +149,7 @@ fn suspect(suspect: &Suspect, has_maps: bool) -> Markup {
             }
             p { (plain(&suspect.evidence())) }
             p { strong { "At the bench: " } (plain(&suspect.technician())) }
-            p { strong { "Next: " } (plain(asked(&suspect.designer(), has_maps))) }
+            p { strong { "Next: " } (plain(&asked(&suspect.designer(), has_maps))) }
         }
     }
 }

@@ -23,6 +23,7 @@ codes! {
         Link [doing] => "link-broke",
         NoAnswer [kind, attempts, waited] => "no-answer",
         Unanswered [kind, bytes, attempts] => "request-never-answered",
+        DamagedEachTime [kind, bytes, attempts] => "request-damaged-each-time",
         Unclosed => "packets-unclosed",
         NotABoard => "not-a-board",
         Echoed => "line-echoes",

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::Extent;
 pub use parameters::{
     ClampEnd, ColumnParity, ContentKind, Counting, FlippedBit, Instead, KernelSwitch, LineFault, MadeAs,
-    MadeWith, Memory, NamedBlanking, Reading, RowSource, SampleBus, SampleLines, StaleFrames,
+    MadeWith, Memory, NamedBlanking, Reading, RowSource, SampleBus, SampleLines, StaleFrames, TableWord,
+    TableWords,
 };
 
 /// A single defect of a board.
@@ -124,6 +125,16 @@ pub enum Defect {
     WeightRoundingMissing {},
     /// Neither the weights between two nodes nor the weighted sum are rounded.
     RoundingMissing {},
+    /// The weights of the kernel are read as numbers without a sign.
+    WeightsUnsigned {},
+    /// The product between two nodes is rounded toward zero instead of down.
+    WeightsTowardZero {},
+    /// The source column is not rounded.
+    SourceRoundingMissing {},
+    /// Where the source's column has the row's other colour, the base column is the one right of it instead of left.
+    BaseColumnRight {},
+    /// Beyond the row's ends stands the nearest sample, instead of the nearest one of the same colour.
+    EdgeColourWrong {},
     /// Results out of range wrap around instead of being clamped.
     ClampMissing {
         /// Where.
@@ -177,6 +188,11 @@ pub enum Defect {
         /// Its level.
         value: u8,
     },
+    /// The datapath interpolates between nodes of the kernel that are next to its own.
+    KernelAddressOff {
+        /// How many nodes ahead.
+        nodes: isize,
+    },
     /// A data line of the memory that holds one weight of the kernel is stuck.
     KernelDataStuck {
         /// The tap that it weighs.
@@ -211,6 +227,11 @@ pub enum Defect {
     },
     /// The two outputs of every pair of columns are exchanged.
     ColumnPairsExchanged {},
+    /// The bytes of every pair of outputs are packed most significant first.
+    PairBytesReversed {
+        /// Whether the pair's first sample is in front, as in one long number; otherwise only the three bytes are reversed.
+        first_in_front: bool,
+    },
     /// The samples of whole rows were lost inside the board, so that these rows are black.
     RowsLost {
         /// How many.
@@ -306,21 +327,13 @@ pub enum Defect {
         read: usize,
     },
     /// A word of a table reads back as another.
-    TableWordWrong {
+    TableWordWrong(TableWord),
+    /// Many words of a table read back as others, and nothing known makes them so.
+    TableWordsWrong(TableWords),
+    /// Every word of a table reads back with its bytes in reverse order.
+    TableBytesReversed {
         /// The table.
         table: Memory,
-        /// The row or the node.
-        entry: usize,
-        /// The tap that the word weighs, in a kernel.
-        weight: Option<String>,
-        /// The bits that differ.
-        bits: Vec<u32>,
-        /// What was uploaded.
-        uploaded: i64,
-        /// What was read.
-        read: i64,
-        /// Words that are wrong in all.
-        wrong: usize,
     },
     /// An entry of a grid reads back as another.
     GridEntryReadsWrong {
@@ -378,12 +391,4 @@ pub enum Defect {
         /// The level.
         value: u8,
     },
-}
-
-impl Defect {
-    /// Its code and its parameters.
-    #[must_use]
-    pub fn tagged(&self) -> (String, super::Parameters) {
-        super::problem::tagged(self)
-    }
 }

@@ -243,3 +243,41 @@ pub struct NamedBlanking {
     /// Pixel clocks with which the same tables gave right rows.
     pub right: u16,
 }
+
+/// A word of a table that reads back as another.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TableWord {
+    /// The table.
+    pub table: Memory,
+    /// The row or the node.
+    pub entry: usize,
+    /// The tap that the word weighs, in a kernel.
+    pub weight: Option<String>,
+    /// The bits that differ.
+    pub bits: Vec<u32>,
+    /// What was uploaded.
+    pub uploaded: i64,
+    /// What was read.
+    pub read: i64,
+    /// Words that are wrong in all.
+    pub wrong: usize,
+}
+
+/// Many words of a table that read back as others.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TableWords {
+    /// The table.
+    pub table: Memory,
+    /// The first entry of them: the row, the node, or the number of the grid's entry.
+    pub entry: usize,
+    /// The tap that its wrong word weighs, in a kernel.
+    pub weight: Option<String>,
+    /// What was uploaded there.
+    pub uploaded: i64,
+    /// What was read.
+    pub read: i64,
+    /// Words that are wrong in all.
+    pub wrong: usize,
+    /// Words of the table.
+    pub words: usize,
+}

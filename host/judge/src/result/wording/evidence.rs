@@ -1,20 +1,14 @@
 //! Words for why a defect is suspected.
 
 use super::words;
-use crate::result::{Account, Defect};
+use crate::result::{Account, Defect, TableWord, TableWords};
 use crate::words::{count, grouped, verb};
 
 /// The evidence for a defect, in one sentence without a full stop.
 #[must_use]
 pub fn evidence(defect: &Defect, account: &Account) -> String {
-    if let Defect::TableLengthWrong { uploaded, read, .. } = defect {
-        let were = verb(*uploaded, "were");
-        return format!("{} {were} uploaded and {} came back", count(*uploaded, "entry"), grouped(*read));
-    }
-    if let Defect::TableWordWrong { uploaded, read, wrong, .. }
-    | Defect::GridEntryReadsWrong { uploaded, read, wrong, .. } = defect
-    {
-        return word(*read, *uploaded, *wrong);
+    if let Some(read) = read_back(defect) {
+        return read;
     }
     let defect = words(defect).defect;
     match *account {
@@ -45,6 +39,28 @@ pub fn evidence(defect: &Defect, account: &Account) -> String {
         }
         Account::Nothing => defect,
     }
+}
+
+/// What was read of a table where nothing is known to have made it so.
+fn read_back(defect: &Defect) -> Option<String> {
+    if let Defect::TableLengthWrong { uploaded, read, .. } = defect {
+        let were = verb(*uploaded, "were");
+        return Some(format!(
+            "{} {were} uploaded and {} came back",
+            count(*uploaded, "entry"),
+            grouped(*read)
+        ));
+    }
+    if let Defect::TableWordWrong(TableWord { uploaded, read, wrong, .. })
+    | Defect::GridEntryReadsWrong { uploaded, read, wrong, .. } = defect
+    {
+        return Some(word(*read, *uploaded, *wrong));
+    }
+    let Defect::TableWordsWrong(TableWords { entry, weight, uploaded, read, wrong, .. }) = defect else {
+        return None;
+    };
+    let weight = weight.as_ref().map_or_else(String::new, |weight| format!(", weight {weight}"));
+    Some(format!("in entry {entry}{weight}, {}", word(*read, *uploaded, *wrong)))
 }
 
 fn word(read: i64, uploaded: i64, wrong: usize) -> String {

@@ -127,6 +127,17 @@ pub(super) fn kernel_address(bit: u32, value: u8) -> Words {
     }
 }
 
+pub(super) fn kernel_off(nodes: isize) -> Words {
+    let (side, way) = if nodes < 0 { ("before", "behind") } else { ("after", "ahead") };
+    Words {
+        part: "kernel address",
+        place: format!("the kernel's address, one node {way}"),
+        defect: format!("every node read as the one {side} it"),
+        designer: "Check between which nodes the weights are interpolated: node i and node i + 1.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
 pub(super) fn kernel_data(weight: &str, bit: u32, value: u8) -> Words {
     Words {
         part: "kernel data",

@@ -72,6 +72,64 @@ pub(super) fn rounding() -> Words {
     }
 }
 
+pub(super) fn weights_unsigned() -> Words {
+    Words {
+        part: "weights",
+        place: "the sign of the kernel's weights".to_owned(),
+        defect: "each weight below 0 taken as 65536 more".to_owned(),
+        designer: "Check that the words of the kernel are taken as two's complement.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn weights_toward_zero() -> Words {
+    Words {
+        part: "weight rounding",
+        place: "the rounding of interpolated weights, toward zero".to_owned(),
+        defect: "the fraction of negative products between two nodes dropped toward zero instead of down"
+            .to_owned(),
+        designer: "Check the shift by 8 between two kernel nodes: it is arithmetic, and a division is none."
+            .to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn source_rounding() -> Words {
+    Words {
+        part: "rounding",
+        place: "the rounding of source coordinates".to_owned(),
+        defect: "their last bits dropped without adding a half".to_owned(),
+        designer:
+            "Check the constant that is added to the source coordinate S: 2^11, or 2^14 where a grid makes S."
+                .to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn base_column_right() -> Words {
+    Words {
+        part: "colour",
+        place: "the side of the base column".to_owned(),
+        defect: "the column right of the source as base where the one left of it has the other colour"
+            .to_owned(),
+        designer: "Check the choice between the base columns n and n - 1: both are left of the source."
+            .to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn edge_colour() -> Words {
+    Words {
+        part: "colour",
+        place: "the samples beyond the row's ends".to_owned(),
+        defect: "the nearest sample there, whatever its colour".to_owned(),
+        designer:
+            "Check which column stands in for one beyond the row's ends: the nearest of the same colour."
+                .to_owned(),
+        technician: LOGIC,
+    }
+}
+
 pub(super) fn clamp(end: ClampEnd) -> Words {
     let beyond = match end {
         ClampEnd::Low => "below 0",
@@ -136,6 +194,27 @@ pub(super) fn pairs_exchanged() -> Words {
         place: "the pairs of columns".to_owned(),
         defect: "the two outputs of every pair of columns exchanged".to_owned(),
         designer: "Check the order in which samples are packed and unpacked.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn pair_bytes(first_in_front: bool) -> Words {
+    let (place, defect) = if first_in_front {
+        (
+            "each pair's first sample in front",
+            "every pair of outputs packed from the first one's highest bit on",
+        )
+    } else {
+        ("each pair's bytes reversed", "the three bytes of every pair of outputs in reverse order")
+    };
+    Words {
+        part: "packing",
+        place: format!("the packing of corrected rows, {place}"),
+        defect: defect.to_owned(),
+        designer:
+            "Check how ROW_OUT packs two samples: 24 bits, the first in the low 12, the lowest byte in front \
+                   (protocol/WIRE.md)."
+                .to_owned(),
         technician: LOGIC,
     }
 }

@@ -57,6 +57,9 @@ pub(crate) const MAPS: &str = "Look at the difference maps of a report.";
 /// The same where a report has no map of them.
 pub(crate) const NO_MAPS: &str = "No map shows the differences: every frame that has a map is right, and samples differ only at full speed \
                                   or after the frames.";
+/// What is told besides to whoever makes a board, since a known defect leaves a known pattern.
+pub(crate) const OF_NEW_DESIGN: &str =
+    "A new design: compare it with *Worked example* and *Golden values* of fpga/DATAPATH.md.";
 /// What is said about differences that no defect explains.
 const UNEXPLAINED: &str = "no single known defect explains them";
 /// For faults of which nothing is known.
@@ -155,6 +158,7 @@ fn words(defect: &Defect) -> Words {
         Defect::RowTableAddressStuck { bit, value } => lines::row_table_address(*bit, *value),
         Defect::RowTableAddressOff { entries } => lines::row_table_off(*entries),
         Defect::KernelAddressStuck { bit, value } => lines::kernel_address(*bit, *value),
+        Defect::KernelAddressOff { nodes } => lines::kernel_off(*nodes),
         Defect::KernelDataStuck { weight, bit, value } => lines::kernel_data(weight, *bit, *value),
         Defect::TapOffset { columns } => logic::tap_offset(*columns),
         Defect::TapDead { tap, reads } => logic::tap_dead(tap, reads.as_deref()),
@@ -162,12 +166,18 @@ fn words(defect: &Defect) -> Words {
         Defect::OutputRoundingMissing {} => logic::output_rounding(),
         Defect::WeightRoundingMissing {} => logic::weight_rounding(),
         Defect::RoundingMissing {} => logic::rounding(),
+        Defect::WeightsUnsigned {} => logic::weights_unsigned(),
+        Defect::WeightsTowardZero {} => logic::weights_toward_zero(),
+        Defect::SourceRoundingMissing {} => logic::source_rounding(),
+        Defect::BaseColumnRight {} => logic::base_column_right(),
+        Defect::EdgeColourWrong {} => logic::edge_colour(),
         Defect::ClampMissing { end } => logic::clamp(*end),
         Defect::CentreIgnored { instead } => logic::centre_ignored(*instead),
         Defect::CentreOff { halves } => logic::centre_off(*halves),
         Defect::CentreBitStuck { bit, value } => lines::centre_bit(*bit, *value),
         Defect::DepthIgnored { instead } => logic::depth_ignored(*instead),
         Defect::ColumnPairsExchanged {} => logic::pairs_exchanged(),
+        Defect::PairBytesReversed { first_in_front } => logic::pair_bytes(*first_in_front),
         Defect::RowsChangedOnEntry { rows, first, frame, flipped } => {
             at_speed::changed_on_entry((*rows, *first, *frame), *flipped)
         }
@@ -190,9 +200,9 @@ fn words(defect: &Defect) -> Words {
         Defect::RowsLost { rows, first } => places::lost(*rows, *first),
         Defect::NoneKnown { .. } => places::unknown(defect),
         Defect::TableLengthWrong { table, .. } => tables::length(*table),
-        Defect::TableWordWrong { table, entry, weight, bits, .. } => {
-            tables::word_read(*table, *entry, weight.as_deref(), bits)
-        }
+        Defect::TableWordWrong(wrong) => tables::word_read(wrong),
+        Defect::TableWordsWrong(wrong) => tables::words_read(wrong),
+        Defect::TableBytesReversed { table } => tables::bytes_reversed(*table),
         Defect::GridEntryReadsWrong { column, row, bits, .. } => {
             tables::grid_entry_read((*column, *row), bits)
         }

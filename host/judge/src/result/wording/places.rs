@@ -142,11 +142,12 @@ pub(super) fn lost(rows: usize, first: usize) -> Words {
 
 pub(super) fn unknown(defect: &Defect) -> Words {
     let maps = if is_unstreamed(defect) { super::NO_MAPS } else { super::MAPS };
+    let hint = hint(defect).map_or_else(String::new, |hint| format!("{hint} "));
     Words {
         part: "unknown",
         place: "an unknown part".to_owned(),
         defect: format!("no known defect explains most of the differences: {}", clauses(defect).join(", ")),
-        designer: hint(defect).map_or_else(|| maps.to_owned(), |hint| format!("{hint} {maps}")),
+        designer: format!("{hint}{maps} {}", super::OF_NEW_DESIGN),
         technician: REPORT,
     }
 }

@@ -2,7 +2,8 @@
 
 use super::places;
 use super::{LOGIC, MEMORY, Words, memory};
-use crate::result::{Memory, Reading};
+use crate::result::{Memory, Reading, TableWord, TableWords};
+use crate::words::{count, grouped};
 
 pub(super) fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
     let illegal = if above_one { " (above 1, so only part of the row can be predicted)" } else { "" };
@@ -110,8 +111,26 @@ pub(super) fn length(table: Memory) -> Words {
     Words { designer, technician: LOGIC, ..of_table(table, "the table's length".to_owned(), String::new()) }
 }
 
-pub(super) fn word_read(table: Memory, entry: usize, weight: Option<&str>, bits: &[u32]) -> Words {
-    of_table(table, word(entry, weight, bits), String::new())
+pub(super) fn word_read(TableWord { table, entry, weight, bits, .. }: &TableWord) -> Words {
+    of_table(*table, word(*entry, weight.as_deref(), bits), String::new())
+}
+
+pub(super) fn words_read(TableWords { table, wrong, words, .. }: &TableWords) -> Words {
+    let place = format!("{}, {} of its {}", memory(*table), grouped(*wrong), count(*words, "word"));
+    stored(*table, place, String::new())
+}
+
+pub(super) fn bytes_reversed(table: Memory) -> Words {
+    let place = format!("{}, the order of its bytes", memory(table));
+    stored(table, place, "the bytes of every word in reverse order".to_owned())
+}
+
+/// A table of which so much is wrong that the logic around its memory is likelier to blame than the memory.
+fn stored(table: Memory, place: String, defect: String) -> Words {
+    let designer = "Check how the board writes and reads the entries of TABLE_WRITE and TABLE_READ: their size, their order, and \
+                    their bytes, of which the lowest comes first (protocol/WIRE.md)."
+        .to_owned();
+    Words { designer, technician: LOGIC, ..of_table(table, place, defect) }
 }
 
 pub(super) fn grid_entry_read(entry: (usize, usize), bits: &[u32]) -> Words {
