@@ -109,12 +109,14 @@ module board #(
         end
     endgenerate
 
-    // One that blinks each second says that the bitstream runs.
+    // One that blinks each second says that the clock runs and that nothing holds the link in reset: a PLL's clock runs without its lock.
     reg [9:0] beat = 10'd0;
     wire      packet_lamp, fault_lamp, frame_lamp;
 
     always @(posedge link_clk)
-        if (link_millisecond)
+        if (link_rst)
+            beat <= 10'd0;
+        else if (link_millisecond)
             beat <= beat + 10'd1;
 
     board_lamp packets (.clk(clk), .rst(rst), .millisecond(millisecond), .pulse(packet_seen), .lamp(packet_lamp));
