@@ -12,7 +12,7 @@ LFE5U_25F = {"luts": 24288, "registers": 24288, "block_rams": 56, "multipliers":
 # yosys' cells, and which resource each takes, how many times.
 TAKES = {"LUT4": ("luts", 1), "CCU2C": ("luts", 2), "TRELLIS_DPR16X4": ("luts", 4), "TRELLIS_FF": ("registers", 1),
          "DP16KD": ("block_rams", 1), "MULT18X18D": ("multipliers", 1)}
-# Multiplexers that belong to the LUTs that they join, and cells of which there is only one.
+# Multiplexers that belong to the LUTs that they join, and cells outside of the fabric, of which there are one or two.
 FREE = {"PFUMX", "L6MUX21", "EHXPLLL", "$_TBUF_"}
 
 

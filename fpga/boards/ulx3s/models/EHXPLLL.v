@@ -1,7 +1,9 @@
-// What lint and the board's benches need of the vendor's cell: its ports. Its output is the input's clock.
+// What lint and the board's benches need of the vendor's cell: its ports, and that a reset stops its clocks and its lock. Its outputs are
+// the input's clock; plls.py checks the frequencies.
 `default_nettype none
 
 module EHXPLLL #(
+    parameter PLLRST_ENA = "DISABLED",
     parameter CLKI_DIV = 1,
     parameter CLKFB_DIV = 1,
     parameter FEEDBK_PATH = "CLKOP",
@@ -29,9 +31,12 @@ module EHXPLLL #(
 );
     wire unused = &{1'b0, CLKFB, STDBY, PHASESEL0, PHASESEL1, PHASEDIR, PHASESTEP, PHASELOADREG, PLLWAKESYNC, ENCLKOP};
 
-    assign CLKOP = CLKI;
-    assign CLKOS = CLKI;
-    assign LOCK = !RST;
+    // Without "ENABLED" the cell does not look at its RST.
+    wire held = RST && PLLRST_ENA == "ENABLED";
+
+    assign CLKOP = CLKI && !held;
+    assign CLKOS = CLKI && !held;
+    assign LOCK = !held;
 endmodule
 
 `default_nettype wire
