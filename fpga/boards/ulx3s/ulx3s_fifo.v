@@ -14,7 +14,8 @@ module ulx3s_fifo #(
     output wire        ft_wr_n,
     output wire        ft_siwu_n,
     output wire        ftdi_rxd,               // RXD of the FT231X, which rests
-    output wire        wifi_gpio0,
+    input  wire        wifi_gpio0,             // of the ESP32, whose pins rest high by the FPGA's pull-ups (common.lpf)
+    input  wire        wifi_en,
     output wire [7:0]  led
     `include "sensor_ports.vh"
 );
@@ -28,7 +29,7 @@ module ulx3s_fifo #(
     assign ft_wr_n = ft_control_drive ? wr_n : 1'bz;
     assign ft_siwu_n = ft_control_drive ? siwu_n : 1'bz;
     assign ftdi_rxd = 1'b1;
-    assign wifi_gpio0 = 1'b1;                  // low, the ESP32 may take the FPGA's JTAG
+    wire unused_wifi = &{1'b0, wifi_gpio0, wifi_en};
 
     halfrow_fifo_bridge #(
         .POWER_UP_WIDTH(1920),

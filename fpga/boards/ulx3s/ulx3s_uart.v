@@ -11,7 +11,8 @@ module ulx3s_uart #(
     input  wire        ftdi_txd,               // TXD of the FT231X
     output wire        ftdi_rxd,               // its RXD
     input  wire        ftdi_nrts,              // its RTS#
-    output wire        wifi_gpio0,
+    input  wire        wifi_gpio0,             // of the ESP32, whose pins rest high by the FPGA's pull-ups (common.lpf)
+    input  wire        wifi_en,
     output wire [7:0]  led
     `include "sensor_ports.vh"
 );
@@ -20,8 +21,7 @@ module ulx3s_uart #(
 
     wire rts_n;
     wire unused_rts_n = &{1'b0, rts_n};
-
-    assign wifi_gpio0 = 1'b1;                  // low, the ESP32 may take the FPGA's JTAG
+    wire unused_wifi = &{1'b0, wifi_gpio0, wifi_en};
 
     halfrow_uart_bridge #(
         .DIVIDER(32),                          // 3 Mbaud of 96 MHz
