@@ -1,5 +1,5 @@
-// The ULX3S behind its FT231X, a UART of 3 Mbaud. The chip's RTS# holds the board's transmitter; its CTS# is on the FPGA's TDO, so the
-// board cannot hold the host.
+// The ULX3S behind its FT231X, a UART of 3 Mbaud. Neither side can hold the other: the chip's CTS# is on the FPGA's TDO, so the host must
+// do without flow control, and the chip's RTS#, which would hold the board's transmitter, is then a constant.
 // halfrow_build.vh, which the build script writes, defines HALFROW_BUILD, HALFROW_SERIAL and, for a board with a sensor, HALFROW_SENSOR.
 `default_nettype none
 `include "halfrow_build.vh"
