@@ -38,12 +38,13 @@ impl LineErrors {
     #[must_use]
     pub fn advice(self) -> Option<&'static str> {
         match self {
-            Self { framing: 1.., .. } => Some(
-                "The chip sees bytes without a stop bit: check that `baud=` is the board's rate, and the line.",
-            ),
+            // A line that is held low lacks stop bits, too, and the chip counts both.
             Self { breaks: 1.., .. } => {
                 Some("The chip sees the board hold its line low: check power and bitstream.")
             }
+            Self { framing: 1.., .. } => Some(
+                "The chip sees bytes without a stop bit: check that `baud=` is the board's rate, and the line.",
+            ),
             Self { overrun: 1.., .. } => Some(
                 "The chip lost bytes that nobody fetched: give it a USB port of its own, without a hub or a virtual machine \
                  between, and use flow=rtscts if the board drives CTS, which a ULX3S does not.",
@@ -73,5 +74,28 @@ impl fmt::Display for LineErrors {
         let some = named.into_iter().filter(|(count, _)| **count > 0);
         let words: Vec<String> = some.map(|(count, name)| format!("{count} {name}")).collect();
         f.write_str(&if words.is_empty() { "none".to_owned() } else { words.join(", ") })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bits of a 16550's line status: 2 overrun, 4 parity, 8 framing, 16 break. A held line sets the last two at once.
+    #[test]
+    fn a_line_that_is_held_low_is_no_matter_of_the_rate() {
+        let advice = |line_status: u8| {
+            let mut errors = LineErrors::default();
+            errors.count(line_status);
+            errors.advice().unwrap_or_default()
+        };
+        for held in [0x10, 0x18, 0x1e] {
+            assert!(advice(held).contains("hold its line low"), "{held:02x}: {}", advice(held));
+        }
+        for poor in [0x08, 0x0e] {
+            assert!(advice(poor).contains("without a stop bit"), "{poor:02x}: {}", advice(poor));
+        }
+        assert!(advice(0x02).contains("that nobody fetched") && advice(0x04).contains("wrong parity"));
+        assert_eq!(advice(0xe0), "");
     }
 }
