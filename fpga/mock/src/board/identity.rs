@@ -7,14 +7,12 @@ use super::bursts::capability;
 use crate::core::GridShape;
 use crate::faults::Defects;
 use crate::options::{Options, TapCount};
+use crate::tables::{GRID_BLANKING, GRID_WIDTH};
 
 /// The datapath of fpga/DATAPATH.md.
 const DATAPATH: u16 = 1;
 /// The datapath of its section on grids.
 const FURTHER_DATAPATH: u16 = 2;
-/// The claimed blanking between rows of a grid that are narrower than the claimed width. The mock needs none.
-const GRID_BLANKING: u8 = 32;
-const GRID_WIDTH: u16 = 144;
 /// Ports by which the datapath reads row factors.
 pub(super) const ROW_FACTOR_PORTS: u8 = 1;
 /// Ports by which it reads nodes: i and i + 1 at once.

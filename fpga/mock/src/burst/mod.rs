@@ -195,7 +195,8 @@ impl Bursts {
         }
         let Some(burst) = &mut self.burst else { return };
         let frame = burst.begun - 1;
-        let (intended, taken) = burst.banks(frame, row, self.defects, self.least_frame_blanking);
+        let least_blanking = self.least_frame_blanking.max(tables.claimed_blanking(width));
+        let (intended, taken) = burst.banks(frame, row, self.defects, least_blanking);
         let bound = tables.bind_from(taken, row, &settings);
         let generation = if intended == Bank::Active { bound.generation } else { 0 };
         let ends_frame = row + 1 == height;
@@ -253,7 +254,7 @@ impl Burst {
             BurstMode::Alternating if !frame.is_multiple_of(2) => Bank::Shadow,
             _ => Bank::Active,
         };
-        let is_late = defects.late_swap && row == 0 && frame > 0 && frame_blanking == least_blanking;
+        let is_late = defects.late_swap && row == 0 && frame > 0 && frame_blanking <= least_blanking;
         (bank(frame), bank(if is_late { frame - 1 } else { frame }))
     }
 }

@@ -19,6 +19,10 @@ pub use error::TableError;
 /// The largest entry of a grid.
 pub(crate) const MOST_GRID_ENTRY: u32 = (1 << 25) - 1;
 
+/// The claimed blanking between rows of a grid that are narrower than the claimed width. The mock needs none.
+pub(crate) const GRID_BLANKING: u8 = 32;
+pub(crate) const GRID_WIDTH: u16 = 144;
+
 /// A bank of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bank {
@@ -246,6 +250,12 @@ impl Tables {
             *word = flipped(u32::from(word.cast_unsigned()), bit) as i16;
         }
         kernel
+    }
+
+    /// The claimed blanking between rows of `width` samples, with the tables of both banks by turns.
+    pub(crate) fn claimed_blanking(&self, width: u16) -> u16 {
+        let has_grid = [Bank::Active, Bank::Shadow].iter().any(|&bank| self.contents(bank).shape.is_some());
+        if has_grid && width < GRID_WIDTH { GRID_BLANKING.into() } else { 0 }
     }
 
     /// The generation of the active bank; 0 before the first commit takes effect.

@@ -131,6 +131,32 @@ fn every_fault_of_the_board_shows_in_what_is_made_with_grids() {
     }
 }
 
+/// Rows of 64 samples that go through a grid need the 32 pixel clocks between them that the mock claims, also from frame to frame,
+/// whichever bank has the grid.
+#[test]
+fn a_late_swap_shows_when_frames_of_a_grid_are_as_close_as_they_may_be() {
+    let rows = TableSet::unstretched(4);
+    for [active, shadow] in [[&grid(4, 7), &grid(4, 8)], [&rows, &grid(4, 8)]] {
+        let signed = |fault, frame_blanking| {
+            let mut bench = configured(fault, 4);
+            // Gives the bank that is the shadow's afterwards the shape of a grid.
+            for (tables, generation, frame) in [(shadow, 1, 0), (active, 2, 1)] {
+                tables.upload(&mut bench);
+                bench.done(&tables.commit(generation, frame));
+                bench.send_all(4, u32::from(frame) * 4..u32::from(frame + 1) * 4);
+                bench.acknowledge(u32::from(frame + 1) * 4);
+            }
+            let burst = Burst { frames: 3, mode: BurstMode::Alternating, frame_blanking, ..ONE };
+            bench.signed(&burst).iter().map(|record| record.signature).collect::<Vec<_>>()
+        };
+        let (late, sound) = (Some(fault("late-swap", &[])), signed(None, 32));
+        assert_eq!(signed(late, 33), sound);
+        let close = signed(late, 32);
+        assert_eq!(close[0], sound[0]);
+        assert!(close[1] != sound[1] && close[2] != sound[2]);
+    }
+}
+
 /// The rows of a frame of twelve that a board, with or without a fault, makes with these tables.
 fn rows_of(fault: Option<BoardFault>, tables: &TableSet) -> Vec<Vec<u16>> {
     let mut bench = configured(fault, 12);
