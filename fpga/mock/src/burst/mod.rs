@@ -198,7 +198,12 @@ impl Bursts {
         let least_blanking = self.least_frame_blanking.max(tables.claimed_blanking(width));
         let (intended, taken) = burst.banks(frame, row, self.defects, least_blanking);
         let bound = tables.bind_from(taken, row, &settings);
-        let generation = if intended == Bank::Active { bound.generation } else { 0 };
+        let generation = match (intended, taken) {
+            (Bank::Shadow, _) => 0,
+            (Bank::Active, Bank::Active) => bound.generation,
+            // A late change is denied.
+            (Bank::Active, Bank::Shadow) => tables.generation(),
+        };
         let ends_frame = row + 1 == height;
         burst.row = (!ends_frame).then_some(row + 1);
         burst.since_row = 0;

@@ -194,6 +194,17 @@ fn a_late_swap_shows_when_frames_are_as_close_as_they_may_be() {
     assert!(bench.signed(&fresh).iter().all(|record| record.signature == FRAME), "no bank changes");
 }
 
+/// Its row 0 is its last, too.
+#[test]
+fn a_late_swap_is_denied_by_the_records_of_frames_of_one_row() {
+    let mut bench = broken(BoardFault::LateSwap);
+    bench.done(&Request::Configure(configuration(1)));
+    TableSet::unstretched(HEIGHT).upload(&mut bench);
+    let close = Burst { mode: BurstMode::Alternating, frames: 3, frame_blanking: 8, ..ONE };
+    let found: Vec<_> = bench.signed(&close).iter().map(|record| record.generation).collect();
+    assert_eq!(found, [1, 0, 1]);
+}
+
 #[test]
 fn a_hidden_pause_shows_in_the_latency_alone() {
     let record = broken(BoardFault::HiddenPause { row: 3 }).signed(&ONE)[0];
