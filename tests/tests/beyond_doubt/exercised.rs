@@ -1,9 +1,9 @@
 //! A PASS names what it did not test, line by line: a fault there goes unseen, and a fault anywhere else does not.
 
 use halfrow::result::{CheckName, Finding, NotExercised, SoakLength};
-use halfrow::run::{AtSpeed, Plan, Vary};
+use halfrow::run::{AtSpeed, Build, Part, Plan, Selection, Vary};
 use halfrow::verdict::Verdict;
-use halfrow_model::BitDepth;
+use halfrow_model::{BitDepth, Camera, Equidistant, Geometry, GridShape};
 use halfrow_tests::system::{System, judge_by_plan, open, streamed};
 
 /// A system that uses few of the board's lines: eight address its columns, and seven are enough to tell the samples in the line
@@ -159,4 +159,42 @@ fn a_clock_that_a_soak_does_not_measure_is_named_and_tells_no_time() {
     let at_speed = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
     let Finding::EqualAtSpeed(equal) = at_speed.finding else { panic!("{}", at_speed.detail()) };
     assert_eq!((equal.frames, equal.clock_hz, equal.seconds), (6, 1, None));
+}
+
+/// The plan of a grid whose rows are so narrow that they need blanking.
+fn through_narrow_grid() -> Plan {
+    let geometry = Geometry::centred(64, 16, BitDepth::Twelve).unwrap();
+    let lens = Equidistant::from_radius(60.0).unwrap();
+    let camera = Camera::new(geometry, lens.into(), (31.5, 7.5), 180.0).unwrap();
+    let tables = camera.grid_by_formula(GridShape::new(2, 5).unwrap());
+    Plan::new(tables, System::TINY.plan().kernel).seen_through(lens)
+}
+
+/// No bank changes in a burst of one frame, and behind a weak lens the tables of both banks make the same samples.
+#[test]
+fn a_late_change_of_tables_goes_unseen_exactly_where_the_pass_names_it() {
+    let without_corners = |plan: Plan| {
+        let parts = plan.parts(&Build::full(2048)).into_iter().filter(|part| *part != Part::Corners);
+        Plan { selection: Some(Selection::all(parts)), ..plan }
+    };
+    let (strong, weak) = (System::TINY, System { radius: 100_000.0, ..System::TINY });
+    let soaked = |plan: Plan, frames| Plan { at_speed: AtSpeed::Soak(SoakLength::Frames { frames }), ..plan };
+    let cases = [
+        (soaked(strong.plan(), 1), true),
+        (soaked(strong.plan(), 2), false),
+        (soaked(weak.plan(), 20), true),
+        (soaked(through_narrow_grid(), 2), false),
+        (strong.plan(), false),
+        (without_corners(strong.plan()), false),
+        (weak.plan(), false),
+        (without_corners(weak.plan()), true),
+    ];
+    for (place, (plan, is_unseen)) in cases.into_iter().enumerate() {
+        let sound = judge_by_plan(&plan, open("mock"));
+        assert_eq!(sound.verdict(), Verdict::Pass, "{place}: {}", sound.headline());
+        let names_it = sound.not_exercised.contains(&NotExercised::TableChangeAtSpeed {});
+        assert_eq!(names_it, is_unseen, "{place}: {:?}", sound.not_exercised);
+        let late = judge_by_plan(&plan, open("mock,fault=late-swap"));
+        assert_eq!(late.verdict() == Verdict::Pass, is_unseen, "{place}: {}", late.headline());
+    }
 }

@@ -203,9 +203,12 @@ fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
     // All built-in frames, one with the sensor's blanking and one with gaps, all with the judged tables.
     let frames: Vec<_> = report.frames.iter().map(|frame| frame.generation).collect();
     assert_eq!(frames, vec![2; Builtin::ALL.len() + 2]);
-    assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
-    let report = judge_by_plan(&plan, open("mock,fault=stuck-data"));
-    assert_eq!(failed_check(&report), Some(CheckName::Frames), "{}", report.headline());
+    // Tables change in the corners of the board's settings, whose grids are others.
+    assert!(!report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
+    for (fault, check) in [("stuck-data", CheckName::Frames), ("late-swap", CheckName::AtSpeed)] {
+        let report = judge_by_plan(&plan, open(&format!("mock,fault={fault}")));
+        assert_eq!(failed_check(&report), Some(check), "{}", report.headline());
+    }
     let at_speed = AtSpeed::Soak(SoakLength::Frames { frames: 100 });
     let report = judge_by_plan(&Plan { at_speed, ..plan }, open("mock"));
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());

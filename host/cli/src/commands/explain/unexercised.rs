@@ -40,8 +40,8 @@ pub(super) const fn act(part: &NotExercised) -> &'static str {
              them, cannot be tested so."
         }
         NotExercised::TableChangeAtSpeed {} => {
-            "Judge tables of a lens, or of a grid that leaves room for a decoy; a board with one bank of tables cannot be \
-             tested so."
+            "Judge two frames at speed or more, with tables of a lens that bends their first row, or of a grid that leaves room \
+             for a decoy; a board with one bank of tables cannot be tested so."
         }
         NotExercised::NamedClock { .. } => {
             "Check the clock that is fed to the board and the one that its capabilities name, then run again with more \

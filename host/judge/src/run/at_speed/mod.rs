@@ -20,7 +20,7 @@ mod watched;
 use std::time::Duration;
 
 use halfrow_model::Geometry;
-use halfrow_protocol::message::{BurstMode, Capabilities};
+use halfrow_protocol::message::Capabilities;
 
 use super::findings::exercised::Exercised;
 use super::findings::levels::Levels;
@@ -108,7 +108,7 @@ impl Run<'_> {
         let plan = self.burst_plan(bursts, &tables);
         let watched = self.judge_frames(&plan, &tables)?;
         let clock = self.judge_clock(&plan, &tables, &watched)?;
-        let changes = plan.mode == BurstMode::Alternating;
+        let changes = tables_late::would_show(&plan, &tables, watched.frames);
         let mut exercised = Exercised { left: untested(changes, watched.paused > 0), ..Exercised::default() };
         exercised.left.extend(self.clock_not_exercised(clock));
         let corners = match self.plan.amount(Part::Corners) {
@@ -173,6 +173,9 @@ impl Run<'_> {
                 .of_frames(2);
             let watched = self.judge_frames(&plan, tables).map_err(in_corner)?;
             if watched.paused == 0 {
+                if tables_late::would_show(&plan, tables, watched.frames) {
+                    exercised.left.retain(|part| *part != NotExercised::TableChangeAtSpeed {});
+                }
                 self.note_shown(&plan, tables, seen);
                 exercised.corners.extend_from_slice(tables);
             }
@@ -243,10 +246,11 @@ impl Run<'_> {
     }
 }
 
-/// What bursts did not exercise at the full pixel clock, by whether tables changed in them and whether frames had pauses.
-fn untested(tables_changed: bool, paused: bool) -> Vec<NotExercised> {
+/// What bursts did not exercise at the full pixel clock, by whether a late change of tables would have shown in them and whether frames
+/// had pauses.
+fn untested(change_would_show: bool, paused: bool) -> Vec<NotExercised> {
     if paused {
         return vec![NotExercised::FullSpeed {}];
     }
-    if tables_changed { Vec::new() } else { vec![NotExercised::TableChangeAtSpeed {}] }
+    if change_would_show { Vec::new() } else { vec![NotExercised::TableChangeAtSpeed {}] }
 }

@@ -1,6 +1,7 @@
 //! Frames that begin with the tables of the frame before them, recognised by their signatures alone.
 
 use halfrow_model::{Signer, TableSet, frame_signature};
+use halfrow_protocol::message::BurstMode;
 
 use super::burst::BurstPlan;
 use super::predicted::signer;
@@ -22,6 +23,24 @@ pub(super) fn tables_late(plan: &BurstPlan, tables: &[Generation], watched: &Bur
     let defect =
         if first == 0 { stale(plan, [active, shadow], first) } else { Defect::TablesChangeLate { rows } };
     Some(Suspect::of_signatures(defect, wrong, explained))
+}
+
+/// The most frames of a burst in which a change is looked for: those whose row 0 is noise.
+const TELLING: u32 = 32;
+
+/// Whether a change of tables that comes a row late would have changed the signature of one of the burst's first `frames`.
+pub(super) fn would_show(plan: &BurstPlan, tables: &[Generation], frames: u32) -> bool {
+    let [active, shadow] = tables else { return false };
+    let [Some(active), Some(shadow)] = [active.upper(1), shadow.upper(1)] else { return false };
+    let mut banks = [&active, &shadow].map(|generation| (signer(generation), &generation.tables));
+    let mut rows = Vec::new();
+    let differ = |n| {
+        let [own, other] =
+            banks.each_mut().map(|(signer, tables)| signer.sign(tables, plan.content(n), &mut rows));
+        own != other
+    };
+    // Before the first frame there is no other.
+    plan.mode == BurstMode::Alternating && (1..frames.min(TELLING)).any(differ)
 }
 
 /// The defect that makes frame `n` with the tables of the other bank.

@@ -23,6 +23,8 @@ const MOST_FRAMES: u32 = 1 << 16;
 /// A soak that is under way.
 pub(super) struct SoakAccount {
     pub(super) report: SoakReport,
+    /// Whether a change of tables that comes late would have shown in some burst.
+    pub(super) change_would_show: bool,
     /// When it began, on the run's clock.
     begun: Duration,
     /// The first difference, with its frame counted from the beginning of the soak.
@@ -35,7 +37,7 @@ impl SoakAccount {
     /// A soak of length `asked` that begins at `begun` on the run's clock.
     pub(super) fn new(asked: SoakLength, begun: Duration) -> Self {
         let report = SoakReport::new(asked);
-        Self { report, begun, first: None, first_doubtful: None }
+        Self { report, change_would_show: false, begun, first: None, first_doubtful: None }
     }
 
     /// The time that is left after `now`, on the run's clock; none if the soak is so many frames long.

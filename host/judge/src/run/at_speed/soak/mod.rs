@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::burst::{BurstPlan, LONGEST_LOOK};
 use super::watched::{BurstSeen, EndsEarly, MiscountSeen};
-use super::{NONE, price};
+use super::{NONE, price, tables_late};
 use crate::board::Bursts;
 use crate::progress::{Event, Step};
 use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength};
@@ -78,13 +78,11 @@ impl Run<'_> {
         self.progress.step(Step::AtSpeed);
         let ended = self.all_bursts(&mut account, bursts, last);
         let ended = account.end(self.clock(), ended);
+        let changes = account.change_would_show;
         let report = account.report;
         let [frames, paused, held_back] = [report.frames, report.paused, report.held_back].map(counted);
         self.findings.soak = Some(report);
         ended?;
-        let capabilities = &self.board.capabilities;
-        let has_decoy = self.generations.iter().any(|generation| generation.number == DECOY);
-        let changes = has_decoy && capabilities.table_banks > 1;
         let mut left = super::untested(changes, paused > 0);
         left.extend(self.clock_unseen());
         self.note_right(paused, EqualAtSpeed { frames, held_back, ..NONE });
@@ -188,6 +186,8 @@ impl Run<'_> {
         told(&watched, self.board.now());
         account.report.paused += u64::from(watched.paused);
         account.report.held_back += u64::from(watched.held_back);
+        account.change_would_show =
+            account.change_would_show || tables_late::would_show(&plan, &tables, watched.frames);
         Ok(Played { plan, tables, watched, ended })
     }
 
