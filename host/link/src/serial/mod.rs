@@ -45,7 +45,7 @@ pub(crate) struct SerialLink {
     path: PathBuf,
     options: SerialOptions,
     opened: Instant,
-    /// What the driver had counted when the port was set.
+    /// What the driver had counted when the port had been set and drained.
     counted_before: Option<Counts>,
     line_errors: LineErrors,
 }
@@ -83,7 +83,7 @@ impl SerialLink {
         }
         never_block(port.as_raw_fd()).map_err(|error| failed(&path, error))?;
         let mut link = Self {
-            counted_before: Counts::of(&port),
+            counted_before: None,
             line_errors: LineErrors::default(),
             port,
             pump: Pump::default(),
@@ -92,6 +92,8 @@ impl SerialLink {
             opened: Instant::now(),
         };
         link.drain();
+        // What it dropped belongs to whoever had the port before.
+        link.counted_before = Counts::of(&link.port);
         Ok(link)
     }
 
