@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::access::Kept;
 use crate::ftdi::{self, Speed};
-use crate::kinds::{self, KINDS};
+use crate::kinds::{self, KINDS, Place, place_of};
 use crate::{BoardKind, Holder, SerialBoard, Target, UsbDevice};
 
 pub use answer::Answer;
@@ -115,13 +115,14 @@ impl Found {
     /// The serial port to which its target leads, if it leads to one.
     fn port(&self) -> Option<PathBuf> {
         let target: Target = self.target.parse().ok()?;
-        target.address.filter(|_| target.kind == "serial").map(PathBuf::from)
+        let is_port = place_of(&target) == Some(Place::Port);
+        target.address.filter(|_| is_port).map(PathBuf::from)
     }
 
     /// Whether asking it takes away, for as long, the serial ports that the system's driver made of its chip.
     #[must_use]
     pub fn takes_ports(&self) -> bool {
-        self.target.split([':', ',']).next() == Some("usb")
+        self.target.parse().is_ok_and(|target| place_of(&target) == Some(Place::Chip))
     }
 
     /// Whether it is worth asking.
@@ -150,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_chip_without_the_serial_driver_takes_ports() {
+    fn only_a_usb_chip_takes_ports() {
         for (target, takes) in [
             ("usb", true),
             ("usb:FT3XYZ", true),
