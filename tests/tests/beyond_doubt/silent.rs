@@ -3,13 +3,15 @@
 use std::thread;
 use std::time::Duration;
 
+use halfrow::board::{Board, OpenOptions};
 use halfrow::link::Candidate;
+use halfrow::link_test::{self, LinkTestError};
 use halfrow::result::Report;
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, open};
 use halfrow_tests::through::Through;
 
 /// The report on a board that never answers the packets that are `meant`, and says so or not.
@@ -114,6 +116,21 @@ fn a_link_that_damages_long_packets_is_not_acquitted() {
     });
     let told = told(&System::TINY.judge_candidate(Candidate { link, ..candidate }));
     assert!(told.contains("8 packets came damaged: the link loses what is sent over it"), "{told}");
+}
+
+/// Nothing comes back damaged, so that only the board's count tells of the link.
+#[test]
+fn a_link_test_tells_what_was_damaged_on_the_way_to_the_board() {
+    let link = Through::boxed(open("mock").link, |link, out, back, wait| {
+        let mut out = out.to_vec();
+        if out.len() > 4080 {
+            out[100] ^= 2;
+        }
+        link.exchange(&out, back, wait)
+    });
+    let mut board = Board::open(link, &OpenOptions::default()).unwrap();
+    let error = link_test::run(&mut board, Duration::from_millis(50), 1).unwrap_err();
+    assert!(matches!(&error, LinkTestError::PoorLink { errors, .. } if errors.damaged() > 0), "{error}");
 }
 
 /// A link that was broken for longer than all tries brings the next request, and the one that was left unanswered.

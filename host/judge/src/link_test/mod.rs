@@ -75,9 +75,11 @@ pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, L
         LinkTestError::Board(source) if test.wrong > 0 => {
             LinkTestError::BrokeOff { wrong: test.wrong, source }
         }
-        LinkTestError::Board(source @ (BoardError::NoAnswer { .. } | BoardError::RowMissing { .. })) => {
-            test.broken_off(source)
-        }
+        LinkTestError::Board(
+            source @ (BoardError::NoAnswer { .. }
+            | BoardError::DamagedEachTime { .. }
+            | BoardError::RowMissing { .. }),
+        ) => test.broken_off(source),
         error => error,
     })
 }
