@@ -91,6 +91,11 @@ fn names(kind: Kind) -> &'static [(&'static str, usize)] {
 
 #[cfg(test)]
 mod tests {
+    use halfrow_protocol::message::{
+        Bank, Burst, BurstMode, Commit, Configuration, Entries, Expect, Hello, Request, Reset, ResetLevel,
+        RowIn, RowPlace, Shape, Span, Table,
+    };
+
     use super::*;
 
     fn asked(kind: Kind, payload: &[u8]) -> Asked {
@@ -128,5 +133,46 @@ mod tests {
         assert_eq!((named(&whole), &*whole.rest), (vec![("level", 2), ("next_row", 65534)], ""));
         let echo = asked(Kind::Echo, &[1, 2, 0x30]);
         assert_eq!((named(&echo), &*echo.rest), (vec![], "010230"));
+    }
+
+    /// Whatever the protocol writes of its own accord has a name here.
+    #[test]
+    fn no_byte_of_a_whole_request_is_without_a_name() {
+        let span = Span { table: Table::Kernel, bank: Bank::Shadow, port: 2, first: 3, count: 0 };
+        let place = RowPlace { row_sequence: 1, frame: 2, row: 3, width: 64, last: true };
+        let shape = Some(Shape { v: 4, k: 5 });
+        let frames = Burst {
+            burst: 1,
+            frames: 2,
+            seed: 3,
+            first_frame: 4,
+            frame_blanking: 5,
+            mode: BurstMode::Alternating,
+        };
+        let geometry =
+            Configuration { width: 64, height: 16, centre2: 64, blanking: 8, gap_seed: 9, bits: 10 };
+        for request in [
+            Request::Hello(Hello { nonce: 1, host: 2, version_min: 3, version_max: 4, take_over: true }),
+            Request::Capabilities,
+            Request::Status { clear: true },
+            Request::Reset(Reset { level: ResetLevel::Session, next_row: 7 }),
+            Request::Echo(&[]),
+            Request::TableWrite(Entries { span, bytes: &[] }),
+            Request::TableRead(span),
+            Request::TableCrc(span),
+            Request::Commit(Commit { steps_crc: 1, kernel_crc: 2, first_frame: 3, generation: 4, shape }),
+            Request::Configure(geometry),
+            Request::RowIn(RowIn { place, packed: &[] }),
+            Request::RowAck,
+            Request::Burst(frames),
+            Request::Records { from: 6 },
+            Request::Expect(Expect { first: 7, bytes: &[] }),
+            Request::Trap,
+        ] {
+            let mut payload = Vec::new();
+            request.write(&mut payload);
+            let (named, rest) = fields(request.kind(), &payload);
+            assert!(rest.is_empty(), "{request:?}: {named:?}, then {rest:?}");
+        }
     }
 }
