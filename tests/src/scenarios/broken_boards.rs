@@ -201,7 +201,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "no answer to ECHO",
     ),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
-    fails("weights without their sign", ",fault=misread", "the sign of the kernel's weights"),
+    fails(
+        "weights without their sign",
+        ",fault=misread,instead=unsigned-weights",
+        "the sign of the kernel's weights",
+    ),
     fails(
         "weights rounded toward zero",
         ",fault=misread,instead=weights-toward-zero",
@@ -231,7 +235,8 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=misread,instead=long-runs",
         SMALLER,
         "because the board counts each as a damaged packet",
-    ),
+    )
+    .or_when_late(&["no answer to ECHO"]),
     expect(
         "ERROR",
         6,

@@ -138,6 +138,34 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         ",fault=unkept-rule,instead=counted-close",
         "a greeting must open the next session",
     ),
+    fails("a window of 16 bits behind a grid", ",fault=unkept-rule,instead=short-window", "next_row 65534"),
+    fails(
+        "gaps that go on in the next frame of a grid",
+        ",fault=unkept-rule,instead=gaps-go-on",
+        "(rule: a configuration must be set as it is, or refused without effect)",
+    ),
+    fails(
+        "a read that is too long, refused without its first entry by a board with grids",
+        ",fault=unkept-rule,instead=unnamed-read",
+        "the board must refuse TABLE_READ as `range`, detail 1, but it refused it as `range`",
+    ),
+    expect(
+        "ERROR",
+        3,
+        "a zero behind a piece of 254 bytes that a board with grids does not send",
+        ",fault=unkept-rule,instead=zero-unsent",
+        GRID,
+        "packets came damaged: the link loses what is sent over it",
+    ),
+    expect(
+        "ERROR",
+        3,
+        "a zero behind a piece of 254 bytes that a board with grids does not read",
+        ",fault=unkept-rule,instead=zero-unread",
+        GRID,
+        "because the board counts each as a damaged packet",
+    )
+    .or_when_late(&["no answer to ECHO"]),
     fails(
         "a commit of a grid that is not checked",
         ",fault=unchecked-commit",
@@ -156,12 +184,50 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     ),
     fails("grids that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted behind a grid", ",fault=hidden-pause", "a maximum latency of"),
-    fails("weights without their sign behind a grid", ",fault=misread", "the sign of the kernel's weights"),
+    fails(
+        "weights without their sign behind a grid",
+        ",fault=misread,instead=unsigned-weights",
+        "the sign of the kernel's weights",
+    ),
+    fails(
+        "weights rounded toward zero behind a grid",
+        ",fault=misread,instead=weights-toward-zero",
+        "the rounding of interpolated weights, toward zero",
+    ),
     fails(
         "source coordinates of a grid that are not rounded",
         ",fault=misread,instead=unrounded-source",
         "the rounding of source coordinates",
     ),
+    fails(
+        "the node after the right one behind a grid",
+        ",fault=misread,instead=next-node",
+        "the kernel's address, one node ahead",
+    ),
+    fails(
+        "an edge of the wrong colour behind a grid",
+        ",fault=misread,instead=nearest-edge",
+        "the samples beyond the row's ends",
+    ),
+    fails(
+        "pairs in reverse behind a grid",
+        ",fault=misread,instead=reversed-pairs",
+        "each pair's bytes reversed",
+    ),
+    fails(
+        "entries of a grid in reverse",
+        ",fault=misread,instead=reversed-entries",
+        "row table, the order of its bytes",
+    ),
+    expect(
+        "ERROR",
+        3,
+        "long runs that are unstuffed wrong by a board with grids",
+        ",fault=misread,instead=long-runs",
+        GRID,
+        "because the board counts each as a damaged packet",
+    )
+    .or_when_late(&["no answer to ECHO"]),
     expect(
         "ERROR",
         6,
