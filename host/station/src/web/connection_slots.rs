@@ -29,10 +29,9 @@ enum At {
     Answers,
     /// It sends news. If it is closed, the page opens it again.
     TellsNews,
-    /// It waits for a request.
+    /// It waits for a request, or for the rest of a form: it takes no login to begin one, and whoever has begun one has been
+    /// promised nothing.
     Waits,
-    /// It waits for the rest of a form. It takes no login to begin one, and whoever has begun one has been promised nothing.
-    Sends,
 }
 
 /// All connections.
@@ -100,9 +99,8 @@ impl Table {
         self.last
     }
 
-    /// Closes a connection of `network`, or without one of the network with the most connections: the one that has been sending a
-    /// form for longest, or else that has waited longest for a request, or else that has sent news for longest. None if there is
-    /// none of these.
+    /// Closes a connection of `network`, or without one of the network with the most connections: the one that has waited
+    /// longest for a request or for the rest of a form, or else that has sent news for longest. None if there is none of these.
     fn one_gives_way(&mut self, network: Option<IpAddr>) -> Option<()> {
         let mut counts = HashMap::<IpAddr, usize>::new();
         for taken in self.taken.values() {
@@ -189,7 +187,7 @@ impl HttpBody for FormBody {
         // It counts since when it is awaited, however often a part of it comes.
         if frame.is_pending() && !self.is_late {
             self.is_late = true;
-            self.slot.is_at(At::Sends);
+            self.slot.is_at(At::Waits);
         }
         frame
     }
@@ -288,24 +286,6 @@ mod tests {
         all[8].is_at(At::Waits);
         let mut late = Vec::new();
         for gone in [&[9][..], &[8, 9], &[5, 8, 9], &[4, 5, 8, 9]] {
-            late.push(slots.take(here).unwrap());
-            late.iter().for_each(|slot| slot.is_at(At::Answers));
-            assert_eq!(lost(&all), gone);
-        }
-        assert_eq!(slots.take(here).unwrap_err(), NoSlot::OfOne);
-    }
-
-    #[test]
-    fn whoever_sends_a_form_gives_way_before_whoever_waits_until_the_form_is_there() {
-        let [here, ..] = addresses();
-        let slots = Slots::new(false);
-        let all = taken(&slots, here, 48);
-        all.iter().for_each(|slot| slot.is_at(At::Answers));
-        all[3].is_at(At::Waits);
-        [7, 6, 5].iter().for_each(|number| all[*number].is_at(At::Sends));
-        all[6].is_at(At::Answers);
-        let mut late = Vec::new();
-        for gone in [&[7][..], &[5, 7], &[3, 5, 7]] {
             late.push(slots.take(here).unwrap());
             late.iter().for_each(|slot| slot.is_at(At::Answers));
             assert_eq!(lost(&all), gone);
