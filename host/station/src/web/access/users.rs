@@ -7,6 +7,7 @@ use argon2::{Argon2, PasswordHasher as _, PasswordVerifier as _};
 use serde::{Deserialize, Serialize};
 
 use super::key::{self, Key};
+use crate::floor::Scan;
 use crate::secret::{self, SecretError};
 use crate::web::routes::Who;
 use crate::web::visit::User;
@@ -73,7 +74,7 @@ pub(crate) enum UserError {
     /// The name is taken, or none.
     #[error("`{0}` cannot be the name of somebody else; give another one")]
     Name(String),
-    /// The badge is somebody's, or empty.
+    /// The badge is somebody's, a barcode of the station, or empty.
     #[error("this badge is {0}; give another one")]
     Badge(String),
     /// The password is too short.
@@ -135,6 +136,9 @@ impl Users {
         }
         if badge.is_empty() {
             return Err(UserError::Badge("empty".to_owned()));
+        }
+        if Scan::is_own(badge) {
+            return Err(UserError::Badge("a barcode of the station".to_owned()));
         }
         if let Some(other) = self.of_badge(key, badge) {
             return Err(UserError::Badge(format!("that of {}", other.name)));

@@ -105,6 +105,10 @@ async fn badge(
         return Ok(None);
     }
     let label = app.settings().scanner.label(&scanned.text).unwrap_or(&scanned.text).to_owned();
+    // It is no guess, and whoever has guessed too often must still be able to end a run.
+    if Scan::is_own(&label) {
+        return Ok(None);
+    }
     let by = match &visit.user {
         Some(user) => Claimant::Person(user.name.clone()),
         None => Claimant::Stranger(peer),

@@ -30,14 +30,33 @@ fn whoever_is_logged_in_does_not_guess_the_badges_of_others_for_long() {
     for wrong in 0..119 {
         assert_eq!(scan(&screens[wrong % 2], &format!("B-1{wrong:03}")).status, 200, "{wrong}");
     }
+    // A barcode of the station is no guess.
+    for _ in 0..120 {
+        assert_eq!(scan(&screens[0], "HR:LANE:1").status, 200);
+    }
     // Nobody begins anew by logging in again.
     let again = serving.operator();
     assert_eq!(scan(&again, "B-1119").status, 200);
     for browser in screens.iter().chain([&again, &serving.operator()]) {
         assert_eq!(scan(browser, "B-0022").status, 429, "also if it is right");
     }
+    let aborted = scan(&again, "HR:ABORT");
+    assert!(aborted.status == 200 && aborted.text().contains("nothing is under way"), "{}", aborted.text());
     // The control: another person, from the same address.
     let braun = serving.logged_in("B-0022", "");
     assert_eq!(scan(&braun, "A-1000").status, 200);
     assert!(scan(&braun, "A-0017").text().contains("Weber tests from now on"));
+}
+
+/// docs/station-lanes.md: ten failures a minute from one address lead to a wait.
+#[test]
+fn whoever_scans_the_stations_own_barcodes_before_a_badge_has_not_guessed() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let browser = serving.browser(PUBLIC);
+    let scan = |text: &str| browser.post("/scan", &[("text", text)]).send().status;
+    for barcode in ["HR:LANE:1", "HR:START", "HR:ABORT", "HR:MOCK"].iter().cycle().take(12) {
+        assert_eq!(scan(barcode), 401, "{barcode}");
+    }
+    assert_eq!(scan("A-0017"), 303, "the badge");
 }

@@ -53,6 +53,21 @@ fn a_station_without_access_says_by_a_code_that_it_has_no_users_and_no_tokens() 
     }
 }
 
+/// It would not log anybody in on the page of lanes.
+#[test]
+fn a_barcode_of_the_station_is_nobodys_badge() {
+    let station = Station::public(1);
+    for barcode in ["HR:START", "HR:LANE:1", "HR:MOCK"] {
+        let refused = station.user(&["add", "Vogel"], &format!("{barcode}\n"));
+        let said = String::from_utf8_lossy(&refused.stderr);
+        assert!(
+            !refused.status.success() && said.contains("barcode of the station"),
+            "{barcode}: {refused:?}"
+        );
+    }
+    assert!(station.user(&["add", "Vogel"], "HR:0017\n").status.success(), "no barcode of the station");
+}
+
 /// A badge that is scanned meanwhile is refused, so none is asked for.
 #[test]
 fn while_people_cannot_be_read_the_lanes_say_so_instead_of_asking_for_a_badge() {
