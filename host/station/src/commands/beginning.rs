@@ -110,7 +110,7 @@ pub(super) fn plant(settings: &Settings) -> Result<&PlantSettings, Failure> {
 
 /// The settings do not name a plant.
 #[derive(Debug, thiserror::Error)]
-#[error("the settings name no plant; write url = \"postgres://halfrow@db.example/plant\" into [plant]")]
+#[error("the settings name no plant; write url = \"postgres://station@db.example/plant\" into [plant]")]
 pub(super) struct NoPlant;
 
 /// The last signal received, which ends what is under way, by its exit code; 0 before the first one.

@@ -29,10 +29,10 @@ const QUIET: Duration = Duration::from_secs(10);
 #[derive(Debug, thiserror::Error)]
 pub enum PlantAddressError {
     /// The text is not the address of a plant.
-    #[error("this is no address of a plant; write it as postgres://halfrow@db.example/plant")]
+    #[error("this is no address of a plant; write it as postgres://station@db.example/plant")]
     Malformed(#[source] tokio_postgres::Error),
     /// The plant's address lacks the host, the user or the database.
-    #[error("the plant's address says no {what}; write it as postgres://halfrow@db.example/plant")]
+    #[error("the plant's address says no {what}; write it as postgres://station@db.example/plant")]
     Without {
         /// What it does not say.
         what: &'static str,
