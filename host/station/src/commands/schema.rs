@@ -16,9 +16,12 @@ const RECORD: &str = include_str!("../../schema/record-1.json");
 const RESULTS: &str = include_str!("../../schema/results-1.json");
 
 /// Print the JSON Schema of what `run`, `check`, `prune` and `codes` print with `--json`, or of a record, or of what was judged
+///
+/// If `history`, `unit`, `yield` or `pareto` have no result, they print what the first of these schemas calls `failed`.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// `record`: of what is kept of a run, goes to sinks, and is written by `export`; else of what this command prints with `--json`
+    /// `record`: of what is kept of a run, goes to sinks, and is written by `export`; else of what this command prints with
+    /// `--json` if there is a result
     of: Option<Of>,
 }
 
