@@ -103,6 +103,11 @@ pub(super) fn load_without_lanes(path: &Path) -> Result<Settings, Failure> {
     Ok(Settings::load_without_lanes(&path)?)
 }
 
+/// Makes the station's folder if there is none, for a command that keeps something there beside the store.
+pub(super) fn make_data(settings: &Settings) -> Result<(), Failure> {
+    Folder::new(&settings.data).make().map_err(Failure::call)
+}
+
 /// `[plant]` of these settings.
 pub(super) fn plant(settings: &Settings) -> Result<&PlantSettings, Failure> {
     settings.plant.as_ref().ok_or_else(|| Failure::call(NoPlant))

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use halfrow::words::{count, verb};
 use halfrow_program::number::counted;
 
-use super::beginning::{SettingsFile, Signal, plant};
+use super::beginning::{SettingsFile, Signal, make_data, plant};
 use super::fetching::{address, published};
 use super::kept::days_ago_ms;
 use super::why::{Why, at_plant};
@@ -119,7 +119,7 @@ fn progress(done: &'static str) -> impl FnMut(u64) {
 fn serve(settings: Settings) -> Result<Exit, Failure> {
     let address = plant(&settings)?.address()?;
     let signal = Signal::heed()?;
-    crate::store::Folder::new(&settings.data).make().map_err(Failure::call)?;
+    make_data(&settings)?;
     let everybody = User { name: String::new(), who: Who::Reader };
     let access = Access::of(&settings, everybody)?;
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;

@@ -2,7 +2,7 @@
 
 use clap::{Args, Subcommand};
 
-use super::beginning::SettingsFile;
+use super::beginning::{SettingsFile, make_data};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::web::{Scope, Tokens, add_token};
@@ -49,7 +49,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let file = file.ok_or_else(|| Failure::call(NoTokens))?;
     match what {
         Action::Add { name, scope } => {
-            crate::store::Folder::new(&settings.data).make().map_err(Failure::call)?;
+            make_data(&settings)?;
             let name = name.trim();
             let shown = print(&add_token(&settings, file, name, *scope)?);
             if shown.is_err() {

@@ -10,7 +10,7 @@ use nix::sys::signal::{SigSet, SigmaskHow, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::sys::termios::{self, LocalFlags, SetArg};
 
-use super::beginning::SettingsFile;
+use super::beginning::{SettingsFile, make_data};
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
@@ -57,7 +57,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let access = settings.access.as_ref().ok_or_else(|| Failure::call(NoUsers))?;
     match what {
         Action::Add { name, role } => {
-            crate::store::Folder::new(&settings.data).make().map_err(Failure::call)?;
+            make_data(&settings)?;
             let badge = asked("badge")?;
             let password = if *role == Role::Engineer { asked("password")? } else { String::new() };
             add_user(&settings, &access.users, (name.trim(), *role), &badge, &password)?;
