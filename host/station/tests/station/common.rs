@@ -46,6 +46,14 @@ pub(crate) fn folder() -> TempDir {
     tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap()
 }
 
+/// The same call under a umask that closes nothing, whatever that of the tests is.
+pub(crate) fn unmasked(call: &Command) -> Command {
+    let mut open = Command::new("sh");
+    open.args(["-c", "umask 0; exec \"$0\" \"$@\""]).arg(call.get_program()).args(call.get_args());
+    open.envs(call.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    open
+}
+
 /// A shell script of this name in `folder`.
 pub(crate) fn script(folder: &Path, name: &str, lines: &str) -> PathBuf {
     program_of(folder, name, &format!("#!/bin/sh\n{lines}"))

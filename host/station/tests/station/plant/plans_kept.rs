@@ -3,8 +3,10 @@
 use std::fs;
 use std::net::TcpListener;
 use std::os::unix::fs::PermissionsExt as _;
+use std::process::Command;
 
 use super::plans::Published;
+use crate::common::{Did, program, unmasked};
 
 #[test]
 fn a_station_starts_with_what_it_has_when_the_plant_is_away() {
@@ -60,7 +62,10 @@ fn a_station_starts_with_what_it_has_when_the_plant_does_not_answer() {
 fn a_folder_that_is_made_for_plans_is_closed_to_others() {
     let made = Published::new();
     assert_eq!(made.publish("engel.key").code, Some(0));
-    assert_eq!(made.fetch().code, Some(0));
+    let mut fetch = Command::new(program());
+    fetch.args(["plan", "fetch", "--settings", &made.path("station.toml")]);
+    let fetched = Did::from(unmasked(&fetch).output().unwrap());
+    assert_eq!(fetched.code, Some(0), "{fetched:?}");
     let mode = fs::metadata(made.path("data")).unwrap().permissions().mode() & 0o777;
     assert_eq!(mode, 0o750, "{mode:o}");
 }
