@@ -83,7 +83,8 @@ const LINES: &[Line] = &[
     Line {
         word: "street",
         meaning: "How many pixels the façade edges of the frame `builtin:street` are off straight lines before and after correction, on the \
-                  average, and at most in brackets. It shows what the tables do to a picture of the default lens, and decides no verdict.",
+                  average, and at most in brackets. The lens is equidistant with the R that was given or, with a file of tables, the default \
+                  one. It decides no verdict.",
         fault: "nobody's: it is a property of lens and tables, and the same with every right board",
         act: "",
         place: "`street` of a result",
