@@ -110,12 +110,19 @@ fn pixels(frame: &Frame, row: usize) -> Vec<[u16; 3]> {
     if row == 0 || row == frame.height() - 1 {
         return (0..=last).map(edge).collect();
     }
-    let mut pixels = Vec::with_capacity(frame.width());
-    pixels.push(edge(0));
-    let [above, here, below] = [row - 1, row, row + 1].map(|row| frame.row(row).windows(3));
-    let sites = [1, 2].map(|column| Site::at(frame.phase(), row, column)).into_iter().cycle();
-    pixels.extend(above.zip(here).zip(below).zip(sites).map(|(around, site)| site.pixel(around)));
-    pixels.push(edge(last));
+    let mut pixels = vec![[0; 3]; frame.width()];
+    for first in [1, 2] {
+        let site = Site::at(frame.phase(), row, first);
+        let [above, here, below] =
+            [row - 1, row, row + 1].map(|row| frame.row(row)[first - 1..].windows(3).step_by(2));
+        let around = above.zip(here).zip(below);
+        for (pixel, around) in pixels[first..].iter_mut().step_by(2).zip(around) {
+            *pixel = site.pixel(around);
+        }
+    }
+    for column in [0, last] {
+        pixels[column] = edge(column);
+    }
     pixels
 }
 
