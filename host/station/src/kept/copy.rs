@@ -269,7 +269,7 @@ fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Cop
     named.append(&mut beyond_rows(&from.blobs(), &copy, Vec::new())?);
     copy_named(&named, &from.blobs(), &to.blobs(), ends)?;
     let (unknown, left_out) = copy_unnamed(&copy, (&pieces, &named), [&from.blobs(), &to.blobs()], ends)?;
-    synced(aside).map_err(StoreError::from)?;
+    to.blobs().sync_names().and_then(|()| synced(aside)).map_err(StoreError::from)?;
     let evidence = to.blobs().all().map_err(StoreError::from)?.len();
     Ok(Copied { runs: copy.final_runs()?.len(), evidence, unknown, left_out })
 }
@@ -287,7 +287,7 @@ fn copy_named(
             Err(error) if ends(&error) => return Err(error.into()),
             Err(_) => {}
             Ok(bytes) => {
-                to.put(&bytes)?;
+                to.place(&bytes)?;
             }
         }
     }
@@ -306,10 +306,10 @@ fn copy_unnamed(
     for found in from.each_unnamed_record(pieces, named) {
         let Some(record) = unless_left_out(found, ends, &mut left_out)? else { continue };
         let Some(bytes) = unless_left_out(from.get(&record.sha256), ends, &mut left_out)? else { continue };
-        to.put(&bytes)?;
+        to.place(&bytes)?;
         for hash in record.attachments.iter().filter(|hash| !named.contains(*hash)) {
             if let Some(bytes) = unless_left_out(from.get(hash), ends, &mut left_out)? {
-                to.put(&bytes)?;
+                to.place(&bytes)?;
             }
         }
         records.push(record);

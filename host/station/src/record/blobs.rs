@@ -104,6 +104,18 @@ impl Blobs {
     /// # Errors
     /// [`BlobError`]; no partial file remains.
     pub fn put(&self, bytes: &[u8]) -> Result<String, BlobError> {
+        let hash = self.place(bytes)?;
+        // A run that ended early may have made either without syncing its name.
+        synced(self.path(&hash).parent().unwrap_or(&self.folder))?;
+        synced(&self.folder)?;
+        Ok(hash)
+    }
+
+    /// Like [`Self::put`] for one of many: their names are only synced by [`Self::sync_names`].
+    ///
+    /// # Errors
+    /// Like [`Self::put`].
+    pub(crate) fn place(&self, bytes: &[u8]) -> Result<String, BlobError> {
         let hash = sha256([bytes]);
         let path = self.path(&hash);
         let folder = path.parent().unwrap_or(&self.folder);
@@ -122,10 +134,19 @@ impl Blobs {
             }
             written => written?,
         }
-        // A run that ended early may have made either without syncing its name.
-        synced(folder)?;
-        synced(&self.folder)?;
         Ok(hash)
+    }
+
+    /// Syncs the names of all evidence to the disk.
+    ///
+    /// # Errors
+    /// [`BlobError::Folder`]
+    pub(crate) fn sync_names(&self) -> Result<(), BlobError> {
+        let refused = |source| BlobError::Folder { path: self.folder.clone(), source };
+        for entry in fs::read_dir(&self.folder).map_err(refused)? {
+            synced(&entry.map_err(refused)?.path())?;
+        }
+        synced(&self.folder)
     }
 
     /// Removes the partial files of a program that was killed.

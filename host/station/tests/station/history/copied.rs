@@ -99,6 +99,24 @@ fn of_a_copy_whose_names_the_disk_did_not_take_nothing_stays() {
     }
 }
 
+/// Every piece needs its folder's name and its own on the disk, but no folder more than once.
+#[test]
+fn each_folder_of_a_copys_evidence_is_brought_to_the_disk_once() {
+    let (made, _, place) = failed();
+    let [copy, to, trace] = ["copy", "to", "trace"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy).unwrap();
+    let mut call = Command::new("strace");
+    call.args(["-y", "-qq", "-e", "trace=fsync", "-o"]).arg(&trace).arg(program()).arg("restore").arg(&copy);
+    assert!(call.arg("--data").arg(&to).status().unwrap().success());
+    let calls = fs::read_to_string(&trace).unwrap();
+    let blobs = fs::read_dir(to.join("blobs")).unwrap().map(|entry| entry.unwrap().file_name());
+    let folders: Vec<_> = blobs.map(|name| format!("/.partial/blobs/{}>", name.display())).collect();
+    assert!(folders.len() > 1, "{folders:?}");
+    for folder in folders.iter().map(String::as_str).chain(["/.partial/blobs>"]) {
+        assert_eq!(calls.matches(folder).count(), 1, "{folder}: {calls}");
+    }
+}
+
 /// A station could begin anew in it, since nothing marks it, and no later try would replace that.
 #[test]
 fn of_a_folder_that_was_made_for_a_copy_nothing_stays_when_the_copy_cannot_begin() {
