@@ -60,6 +60,22 @@ struct LastVerdict {
     target: String,
 }
 
+impl LastVerdict {
+    /// Whether it is of a shift that lasts so many milliseconds, at `now_ms`, and the last moment at which this holds.
+    fn counts(&self, now_ms: i64, lasts: i64) -> (bool, i64) {
+        // Nobody knows when a judgement that is dated further ahead was made.
+        let from = self.started_ms.saturating_sub(TOLERATED_MS);
+        let until = self.started_ms.saturating_add(lasts);
+        if now_ms < from {
+            (false, from.saturating_sub(1))
+        } else if now_ms <= until {
+            (true, until)
+        } else {
+            (false, i64::MAX)
+        }
+    }
+}
+
 impl Folder {
     /// Whether a run of this serial number that begins at `now_ms` can count as production: it is of a product, and its lane was
     /// checked in this shift.
@@ -83,24 +99,20 @@ impl Folder {
         let units = [(shift.good.clone(), Verdict::Pass), (shift.bad.serial(lane), Verdict::Fail)];
         let mut before = String::new();
         for (serial, expected) in units {
-            let since = now_ms.saturating_sub(lasts);
-            let of = values![station, lane, plan_sha256, product, &serial, since];
+            let of = values![station, lane, plan_sha256, product, &serial];
             let last =
                 self.read("to tell who checked a shift", |from| from.first(sql::LAST_JUDGEMENT, of, judged))?;
-            // Nobody knows when a judgement that is dated further ahead was made.
             let last = last.filter(|last| {
-                let is_astray = last.started_ms > now_ms.saturating_add(TOLERATED_MS);
-                if is_astray {
-                    until_ms = until_ms.min(last.started_ms.saturating_sub(TOLERATED_MS + 1));
+                // What was judged against the lane holds until the next judgement, whatever the clock said then.
+                if last.verdict != expected {
+                    return true;
                 }
-                !is_astray
+                let (counts, until) = last.counts(now_ms, lasts);
+                until_ms = until_ms.min(until);
+                // After a repair the good unit passes again, and an earlier FAIL of the bad one says nothing of the lane as
+                // it is now.
+                counts && last.run > before
             });
-            // After a repair the good unit passes again, and an earlier FAIL of the bad one says nothing of the lane as it is
-            // now.
-            let last = last.filter(|last| last.verdict != expected || last.run > before);
-            if let Some(LastVerdict { started_ms, .. }) = &last {
-                until_ms = until_ms.min(started_ms.saturating_add(lasts));
-            }
             match last {
                 Some(last) if last.verdict == expected => before = last.run,
                 last => {

@@ -1,6 +1,7 @@
 //! A station with several lanes, by its program: scans in, news out.
 
 mod again;
+mod dated;
 pub(crate) mod ends;
 mod flat;
 pub(crate) mod floor;
