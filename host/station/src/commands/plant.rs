@@ -8,7 +8,6 @@ use halfrow_program::number::counted;
 
 use super::beginning::{SettingsFile, Signal, make_data, plant};
 use super::fetching::{address, published};
-use super::kept::days_ago_ms;
 use super::why::{Why, at_plant};
 use super::{Failure, check, print};
 use crate::check::check_plant;
@@ -94,10 +93,9 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             check::tell(&check_plant(&snapshot, &mut |runs| told(runs as u64))?, *json)
         }
         Action::Prune { older_than, why } => {
-            let before_ms = days_ago_ms(*older_than);
             let mut told = progress("rows removed");
             let mut plant = at_plant(&address()?.patient(), &why.operator, "plant prune")?;
-            let removed = plant.prune(before_ms, why.by(), &mut told)?;
+            let removed = plant.prune(*older_than, why.by(), &mut told)?;
             let (rows, were) = (count(removed, "row"), verb(removed, "were"));
             print(&format!("{rows} {were} removed; every record is kept"))
         }

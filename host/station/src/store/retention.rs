@@ -11,6 +11,9 @@ use crate::clock;
 use crate::ids;
 use crate::record::UnnamedRecord;
 
+/// A day in milliseconds.
+pub(super) const DAY_MS: i64 = 86_400_000;
+
 impl Folder {
     /// Copies the database as it is at this moment to the new file `to`.
     pub(crate) fn copy_database(&self, to: &Path) -> Result<(), StoreError> {

@@ -151,6 +151,7 @@ statements! {
     pub(super) AUDIT_BY_ID = "audit-by-id.sql";
     pub(super) ADD_ORIGIN = "add-origin.sql";
     pub(super) ORIGIN = "origin.sql";
+    pub(super) NOW = "plant/now.sql";
     pub(super) SEEN = "plant/seen.sql";
     pub(super) FORGET_STATION = "plant/forget-station.sql";
     pub(crate) STATIONS = "plant/stations.sql";

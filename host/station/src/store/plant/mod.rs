@@ -237,6 +237,14 @@ impl Plant {
         })
     }
 
+    /// The time by the plant's clock, in milliseconds since 1970, UTC.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant does not tell it.
+    pub fn now_ms(&mut self) -> Result<i64, StoreError> {
+        self.carry_out("to tell the time", |database| database.one(sql::NOW, &[], |row| row.get(0)))
+    }
+
     fn reach(address: &PlantAddress) -> Result<Self, StoreError> {
         let shown = PathBuf::from(address.to_string());
         let database = address.connect().map_err(|source| {

@@ -1,6 +1,7 @@
 //! Rows of old runs that serve only to be searched: the records have all of their content.
 
 use super::super::database::values;
+use super::super::retention::DAY_MS;
 use super::super::{By, Snapshot, StoreError, statements as sql};
 use super::Plant;
 use crate::ids;
@@ -9,19 +10,14 @@ use crate::ids;
 const PRUNE: &str = "prune rows";
 
 impl Plant {
-    /// Removes the steps and measurements of all runs that began before `before_ms`, milliseconds since 1970, UTC. Calls `told`
-    /// with the number of rows removed so far; returns that of all. The audit has the removal before it begins. Runs, records,
-    /// and all that is counted stay. After an interruption, call it again.
+    /// Removes the steps and measurements of all runs that began more than so many days ago, by the plant's clock: whoever calls
+    /// this may have a wrong one. Calls `told` with the number of rows removed so far; returns that of all. The audit has the
+    /// removal before it begins. Runs, records, and all that is counted stay. After an interruption, call it again.
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
-    pub fn prune(
-        &mut self,
-        before_ms: i64,
-        by: By<'_>,
-        told: &mut dyn FnMut(u64),
-    ) -> Result<u64, StoreError> {
-        let bound = ids::first_of(before_ms);
+    pub fn prune(&mut self, days: u32, by: By<'_>, told: &mut dyn FnMut(u64)) -> Result<u64, StoreError> {
+        let bound = ids::first_of(self.now_ms()?.saturating_sub(DAY_MS * i64::from(days)));
         self.audited("to be pruned", by.does(PRUNE, &bound), |_| Ok(1))?;
         let (mut after, mut removed) = (String::new(), 0);
         loop {

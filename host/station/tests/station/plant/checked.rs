@@ -12,6 +12,7 @@ use super::mismatch::{found, two};
 use super::pages::settings;
 use super::sent::{send, send_as};
 use super::server::Server;
+use crate::clocks::Clocks;
 use crate::common::{Did, program};
 use crate::history::generated::Draw;
 use crate::history::made::{BEGIN_MS, DAY_MS, Run};
@@ -115,6 +116,10 @@ fn count(server: &Server, table: &str) -> String {
 }
 
 fn prune(settings: &Path, days: i64) -> Did {
+    pruning(settings, days).output().unwrap().into()
+}
+
+fn pruning(settings: &Path, days: i64) -> Command {
     let mut command = Command::new(program());
     command.args([
         "plant",
@@ -126,7 +131,8 @@ fn prune(settings: &Path, days: i64) -> Did {
         "--operator",
         "engel",
     ]);
-    command.arg("--settings").arg(settings).output().unwrap().into()
+    command.arg("--settings").arg(settings);
+    command
 }
 
 /// The rows of old runs may go, since the records contain them; a run that arrives late may still have rows.
@@ -162,6 +168,26 @@ fn rows_of_old_runs_are_removed_and_nothing_else_is_missed() {
     // Rows of newer runs that are missing are still reported.
     let faults =
         spoilt(&server, "DELETE FROM step WHERE run_id = (SELECT max(run_id) FROM step) AND seq = 1");
+    assert_eq!(faults.len(), 1, "{faults:?}");
+}
+
+/// Otherwise rows of young runs would be gone, and from then on the audit would explain whatever else is missing.
+#[test]
+fn rows_are_as_old_as_the_plant_s_clock_says_whatever_that_of_the_office_says() {
+    let server = plant();
+    let folder = crate::common::folder();
+    let pruning = |days: i64| pruning(&settings(&server, folder.path(), ""), days);
+    let rows = || ["step", "measurement"].map(|table| count(&server, table));
+    let before = rows();
+    // All runs began later, by some years.
+    let days = (crate::common::now_ms() - BEGIN_MS) / DAY_MS + 6_000;
+    let clocks = Clocks::in_folder(folder.path());
+    clocks.ahead(20 * 366 * 86_400, 0);
+    let done: Did = clocks.of(&mut pruning(days)).output().unwrap().into();
+    assert_eq!(done.said, "0 rows were removed; every record is kept\n", "{}", done.complained);
+    assert_eq!(rows(), before);
+    let missing = "DELETE FROM step WHERE run_id = (SELECT max(run_id) FROM step) AND seq = 1";
+    let faults = spoilt(&server, missing);
     assert_eq!(faults.len(), 1, "{faults:?}");
 }
 

@@ -68,7 +68,7 @@ fn a_plant_takes_so_many_runs_a_second_and_grows_by_so_much() {
     println!("plant check in {:.0} s", begun.elapsed().as_secs_f64());
     plant = Plant::connect(&server.address()).unwrap();
     let begun = Instant::now();
-    let removed = plant.prune(i64::MAX, engel(&reason("the figure")), &mut |_| ()).unwrap();
+    let removed = plant.prune(1, engel(&reason("the figure")), &mut |_| ()).unwrap();
     println!("plant prune of all runs: {removed} rows in {:.0} s", begun.elapsed().as_secs_f64());
     println!("{}", vacuumed(&server, "VACUUM (FULL, ANALYZE)"));
 }
