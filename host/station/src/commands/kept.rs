@@ -10,7 +10,6 @@ use serde_json::json;
 use super::looking::Data;
 use super::why::{at_station, person};
 use super::{Failure, document, print};
-use crate::clock;
 use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
@@ -105,7 +104,10 @@ pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
     let folder = data.folder();
     let mut store = at_station(&folder, operator, &format!("prune {}", folder.path().display()))?;
     let old = match older_than {
-        Some(days) => kept::prune(&mut store, days_ago_ms(*days), operator)?,
+        Some(days) => {
+            let before_ms = store.days_ago_ms(*days)?;
+            kept::prune(&mut store, before_ms, operator)?
+        }
         None => Pruned::default(),
     };
     let unnamed = kept::prune_unnamed(&mut store, operator)?;
@@ -127,11 +129,6 @@ pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
         count(spools, "spool"),
         count(bytes, "byte")
     ))
-}
-
-/// The time `days` days ago, in milliseconds since 1970, UTC.
-pub(super) fn days_ago_ms(days: u32) -> i64 {
-    clock::now_ms().saturating_sub(86_400_000 * i64::from(days))
 }
 
 impl From<CopyError> for Failure {

@@ -211,13 +211,17 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when the database cannot be read, or there is no randomness.
     pub fn new_id(&mut self, now_ms: i64) -> Result<Uuid, StoreError> {
-        let newest: Option<String> = self
-            .read("to tell its newest run", |from| from.one(statements::NEWEST_ID, &[], |row| row.get(0)))?;
+        let newest = self.newest_id()?;
         let id = ids::new(now_ms)?;
         match newest {
             Some(newest) if newest > id.to_string() => Ok(ids::new(ids::made_ms(&newest) + 1)?),
             _ => Ok(id),
         }
+    }
+
+    /// The greatest id of a run or a rebinding.
+    fn newest_id(&mut self) -> Result<Option<String>, StoreError> {
+        self.read("to tell its newest run", |from| from.one(statements::NEWEST_ID, &[], |row| row.get(0)))
     }
 
     /// Enters an open run. Only then may its board be touched. Returns its head with the unit's id and the fence.

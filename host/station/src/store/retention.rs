@@ -91,6 +91,16 @@ impl Removed {
 }
 
 impl Store {
+    /// The moment so many days ago, in milliseconds since 1970, UTC. They are counted back from when the newest run began, if that is
+    /// earlier than now: a clock that is ahead makes nothing here older.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub(crate) fn days_ago_ms(&mut self, days: u32) -> Result<i64, StoreError> {
+        let newest_ms = self.newest_id()?.map_or(i64::MAX, |newest| ids::made_ms(&newest));
+        Ok(clock::now_ms().min(newest_ms).saturating_sub(DAY_MS * i64::from(days)))
+    }
+
     /// The hashes of the attachments whose runs all ended before `before_ms`, and by their ids began before it.
     pub(crate) fn old_evidence(&self, before_ms: i64) -> Result<Vec<String>, StoreError> {
         Snapshot::take(&self.folder)?.rows(

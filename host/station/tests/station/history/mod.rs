@@ -17,6 +17,7 @@ mod pages;
 mod pareto;
 mod pictures;
 mod piped;
+mod pruned;
 mod put_back;
 mod read_only;
 pub(crate) mod released;

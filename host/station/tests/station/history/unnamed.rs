@@ -387,6 +387,7 @@ fn runs_that_are_recorded_meanwhile_lose_nothing() {
 fn the_command_says_what_it_removed() {
     let mut made = Made::new();
     made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
+    made.run(&Run { started_ms: BEGIN_MS + 25 * HOUR_MS, ..Run::of("S2", End::Pass) });
     evidence(&made.folder(), "nobody's", 25 * HOUR);
     spool(&made.folder(), &id(BEGIN_MS, 7), 25 * HOUR);
     let folder = made.closed();
@@ -394,7 +395,6 @@ fn the_command_says_what_it_removed() {
     let expected = "1 piece and 1 spool that no row names were removed, 11 bytes; every record is kept\n";
     assert_eq!((code, said.as_str()), (0, expected));
     let (code, said, _) = did(&folder, &["prune", "--older-than", "1", "--operator", "weber"]);
-    let expected = "1 piece of evidence was removed, 4 bytes; 0 pieces and 0 spools that no row names \
-                    were removed, 0 bytes; every record is kept\n";
+    let expected = "1 piece of evidence was removed, 4 bytes; 0 pieces and 0 spools that no row names were removed, 0 bytes; every record is kept\n";
     assert_eq!((code, said.as_str()), (0, expected));
 }
