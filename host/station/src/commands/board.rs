@@ -270,8 +270,9 @@ fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failu
     let over = end_of_stdin()?;
     let is_over = || over.load(Ordering::Relaxed) || signal.by().is_some();
     let name = format!("{:016x}", rng().random::<u64>());
-    let waiter = Waiter::new(kind, &name, station).map_err(Failure::error)?;
     let plant = PlantLink::new(address.clone());
+    let now_ms = plant.ask(Plant::now_ms)?;
+    let waiter = Waiter::new(kind, &name, station, now_ms).map_err(Failure::error)?;
     let Some(held) = wait(&plant, &waiter, &is_over)? else { return Ok(Exit::Pass) };
     let holding = Holding::begin(plant, Held::Board(held.clone()));
     print(&json!({ "held": held }).to_string())?;

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::super::database::{Database, DatabaseError, Row, values};
 use super::super::{By, Deed, Snapshot, StoreError, statements as sql};
 use super::{LOCK_BOARDS, Plant};
-use crate::clock::{self, Moment};
+use crate::clock::Moment;
 use crate::ids;
 
 /// How long a board or a job is held without being renewed, in milliseconds.
@@ -89,12 +89,13 @@ pub enum Turn {
 }
 
 impl Waiter {
-    /// Somebody at `station` who waits from now on, called `name`, which has no blanks.
+    /// Somebody at `station` who waits from `now_ms` on, by the plant's clock, called `name`, which has no blanks. By their own
+    /// clocks, those whose is slow would come first.
     ///
     /// # Errors
     /// [`ids::NoRandomness`]
-    pub fn new(kind: &str, name: &str, station: &str) -> Result<Self, ids::NoRandomness> {
-        let id = ids::new(clock::now_ms())?.to_string();
+    pub fn new(kind: &str, name: &str, station: &str, now_ms: i64) -> Result<Self, ids::NoRandomness> {
+        let id = ids::new(now_ms)?.to_string();
         let holder = format!("{station} {name}");
         Ok(Self { id, kind: kind.to_owned(), holder, station: station.to_owned() })
     }
@@ -293,7 +294,7 @@ pub struct Waiting {
     pub kind: String,
     /// Who.
     pub holder: String,
-    /// Since when, in milliseconds since 1970, UTC, by their own clock.
+    /// Since when, in milliseconds since 1970, UTC, by the plant's clock.
     pub since_ms: i64,
 }
 

@@ -10,8 +10,8 @@ use super::super::database::{Database, DatabaseError, FromValue, Row, Value, val
 use super::super::{AgainError, By, Deed, Snapshot, StoreError, retest_policy, statements as sql};
 use super::boards::{LEASE_MS, Lease, hold};
 use super::{Plant, arrived};
+use crate::ids;
 use crate::plan::{Again, Plan};
-use crate::{clock, ids};
 
 /// How it stands with a job; in the order in which a job comes to them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum, Display, EnumString, VariantArray)]
@@ -147,7 +147,8 @@ impl Plant {
     /// [`StoreError`] when the plant does not take them.
     pub fn add_jobs(&mut self, job: &NewJob<'_>, count: u32) -> Result<Vec<String>, StoreError> {
         let NewJob { plan, wanted, needs, priority, operator } = job;
-        let at_ms = clock::now_ms();
+        // By their own clocks, jobs of a computer whose clock is slow would come before all that wait.
+        let at_ms = self.now_ms()?;
         let mut added = Vec::new();
         for _ in 0..count {
             added.push(ids::new(at_ms)?.to_string());

@@ -8,11 +8,12 @@ use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
 use serde_json::Value;
 
 use super::{any, board, job, plan, run_out, settings, shared, with_a_job, worker};
-use crate::common::{engel, program, reason, until};
+use crate::clocks::Clocks;
+use crate::common::{engel, now_ms, program, reason, until};
 use crate::plant::server::Server;
 
 fn waiter(name: &str) -> Waiter {
-    Waiter::new("mock", name, "12").unwrap()
+    Waiter::new("mock", name, "12", now_ms()).unwrap()
 }
 
 #[test]
@@ -38,7 +39,7 @@ fn who_waits_longest_is_the_next_and_a_job_comes_after_people() {
     assert_eq!((held.holder.as_str(), held.fence), ("12 third", 2));
     plant.give_back(&held).unwrap();
     assert!(plant.claim(&worker("12")).unwrap().is_some());
-    assert_eq!(plant.wait(&Waiter::new("none", "first", "12").unwrap()).unwrap(), Turn::Never);
+    assert_eq!(plant.wait(&Waiter::new("none", "first", "12", now_ms()).unwrap()).unwrap(), Turn::Never);
 }
 
 /// The rows of both are ready before either is committed.
@@ -96,7 +97,7 @@ fn one_for_all_and_one_for_a() -> (Server, Plant) {
 fn waiting<const N: usize>(who: [(&str, &str); N]) -> [Waiter; N] {
     who.map(|(name, station)| {
         thread::sleep(std::time::Duration::from_millis(2));
-        Waiter::new("mock", name, station).unwrap()
+        Waiter::new("mock", name, station, now_ms()).unwrap()
     })
 }
 
@@ -145,7 +146,7 @@ fn what_those_in_front_are_to_get_is_left_to_them() {
             "INSERT INTO waiter VALUES ('{}', 'mock', '{}', {})",
             waiter.id,
             waiter.holder,
-            crate::common::now_ms() + 600_000
+            now_ms() + 600_000
         );
         server.client("plant").batch_execute(&wait).unwrap();
     }
@@ -221,9 +222,13 @@ struct Hold {
 
 impl Hold {
     fn start(server: &Server, name: &str) -> Self {
+        Self::by(Command::new(program()), server, name)
+    }
+
+    /// The same by this call of the program.
+    fn by(mut command: Command, server: &Server, name: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = settings(server, folder.path(), name);
-        let mut command = Command::new(program());
         command.args(["board", "hold", "mock", "--settings"]).arg(path);
         let mut process =
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
@@ -268,6 +273,25 @@ fn a_board_is_held_until_stdin_ends_and_the_next_one_gets_it() {
     assert!(third.tells("lost")["said"].as_str().unwrap().contains("not ours any more"));
     assert_eq!(third.process.wait().unwrap().code(), Some(3));
     drop(Plant::connect(&server.address()).unwrap());
+}
+
+/// A computer whose clock is slow would be served before all others for ever, and one whose clock is fast after them.
+#[test]
+fn who_came_first_is_told_by_the_plant_s_clock_and_not_by_theirs() {
+    let (server, _plant) = shared(1);
+    let mut first = Hold::start(&server, "12");
+    first.tells("held");
+    let place = tempfile::tempdir().unwrap();
+    let clocks = Clocks::in_folder(place.path());
+    let mut waiting = Vec::new();
+    for (name, ahead, before) in [("13", 600, 0), ("14", -600, 1), ("15", 0, 2)] {
+        clocks.ahead(ahead, 0);
+        let mut command = Command::new(program());
+        clocks.of(&mut command);
+        let mut hold = Hold::by(command, &server, name);
+        assert_eq!(hold.tells("waits")["before"], before, "{name}");
+        waiting.push(hold);
+    }
 }
 
 /// Its place in the queue is kept for ten seconds.

@@ -95,7 +95,7 @@ fn a_job_and_a_board_are_held_for_half_a_minute() {
     assert_held(since_ms, "job");
     assert_held(since_ms, "board WHERE name = 'shelf-0'");
     let since_ms = now_ms();
-    let turn = plant.wait(&Waiter::new("ulx3s", "weber", "12").unwrap()).unwrap();
+    let turn = plant.wait(&Waiter::new("ulx3s", "weber", "12", now_ms()).unwrap()).unwrap();
     assert!(matches!(turn, Turn::Held(_)), "{turn:?}");
     assert_held(since_ms, "board WHERE name = 'shelf-2'");
 }

@@ -6,6 +6,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use super::{settings, shared};
+use crate::clocks::Clocks;
 use crate::common::{Did, program};
 use crate::plant::server::Server;
 
@@ -24,7 +25,11 @@ impl Engineer {
     }
 
     fn did(&self, arguments: &[&str]) -> Did {
-        let mut command = Command::new(program());
+        self.did_by(Command::new(program()), arguments)
+    }
+
+    /// The same by this call of the program.
+    fn did_by(&self, mut command: Command, arguments: &[&str]) -> Did {
         command.args(arguments).arg("--settings").arg(self.folder.path().join("station.toml"));
         command.output().unwrap().into()
     }
@@ -40,6 +45,24 @@ impl Engineer {
     fn commands(&self) -> Vec<String> {
         self.server.rows("SELECT subject FROM audit WHERE act = 'command' ORDER BY id").concat()
     }
+}
+
+/// Older jobs come first, whoever adds them.
+#[test]
+fn jobs_of_a_computer_whose_clock_is_slow_come_behind_those_that_wait() {
+    let engineer = Engineer::new();
+    let plan = engineer.folder.path().join("plan.toml").display().to_string();
+    let clocks = Clocks::in_folder(engineer.folder.path());
+    let ids = [600, -600, 0].map(|ahead| {
+        clocks.ahead(ahead, 0);
+        let mut call = Command::new(program());
+        clocks.of(&mut call);
+        let add = ["job", "add", "--operator", "engel", "--plan", &plan, "--kind", "mock"];
+        let added = engineer.did_by(call, &add);
+        assert_eq!(added.code, Some(0), "{added:?}");
+        added.said.trim().to_owned()
+    });
+    assert!(ids.is_sorted(), "{ids:?}");
 }
 
 #[test]

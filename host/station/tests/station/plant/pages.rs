@@ -9,7 +9,7 @@ use halfrow_station::store::{Waiter, Wanted};
 
 use super::sent::{introduction, send};
 use super::server::Server;
-use crate::common::{engel, program, query, reason};
+use crate::common::{engel, now_ms, program, query, reason};
 use crate::history::made::Made;
 use crate::history::released::history;
 use crate::jobs::{board, job, plan, worker};
@@ -199,7 +199,7 @@ fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
     plant.add_jobs(&job(&plan, &Wanted::Serial("CAT00007".to_owned())), 1).unwrap();
     plant.claim(&worker("north")).unwrap().unwrap();
     plant.take_out("shelf-2", engel(&reason("it smells"))).unwrap();
-    plant.wait(&Waiter::new("ulx3s", "weber", "13").unwrap()).unwrap();
+    plant.wait(&Waiter::new("ulx3s", "weber", "13", now_ms()).unwrap()).unwrap();
     let page = text(&browser, "/jobs");
     for expected in [
         "<a href=\"/unit?serial=CAT00007\">CAT00007</a>",

@@ -17,7 +17,7 @@ use nix::unistd::Pid;
 
 use super::sent::sink;
 use super::server::Server;
-use crate::common::{folder, program, until, until_found};
+use crate::common::{folder, now_ms, program, until, until_found};
 use crate::history::made::{End, Made, Run};
 use crate::jobs::disk::Worker;
 use crate::jobs::{settings_of, shared};
@@ -118,7 +118,7 @@ fn a_board_is_still_held_when_the_connection_that_renews_it_is_dead() {
     let (server, mut plant) = shared(1);
     let way = Way::to(server.port());
     let link = PlantLink::new(PlantAddress::new(&way.url(), None, None).unwrap());
-    let waiter = Waiter::new("mock", "weber", "12").unwrap();
+    let waiter = Waiter::new("mock", "weber", "12", now_ms()).unwrap();
     let turn = link.ask(|plant| plant.wait(&waiter)).unwrap();
     let Turn::Held(lease) = turn else { panic!("it is free") };
     let holding = Holding::begin(link, Held::Board(lease.clone()));
