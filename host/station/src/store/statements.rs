@@ -176,6 +176,7 @@ statements! {
     pub(super) BOARD_OUT = "plant/board-out.sql";
     pub(super) FORGET_BOARD = "plant/forget-board.sql";
     pub(super) BOARDS = "plant/boards.sql";
+    pub(super) SHORTEN = "plant/shorten.sql";
     pub(super) WAITERS = "plant/waiters.sql";
     pub(super) WAIT = "plant/wait.sql";
     pub(super) QUEUE = "plant/queue.sql";

@@ -113,6 +113,7 @@ impl Plant {
         self.audited("to share a board", deed, |to| {
             // Two who share one unit under two names at once would not see each other's board.
             to.batch(LOCK_BOARDS)?;
+            shorten(to)?;
             to.execute(sql::ADD_BOARD, values![name, kind, target, product, serial, station])
         })
     }
@@ -167,6 +168,7 @@ impl Plant {
         let Waiter { id, kind, holder, station } = waiter;
         self.carry_out("to give a board", |database| {
             database.transaction(|to| {
+                shorten(to)?;
                 to.execute(sql::WAIT, values![id, kind, holder, WAITING_MS])?;
                 let queue = to.all(sql::QUEUE, values![kind, id], Queue::of)?;
                 let left = left_to_others(&queue, station);
@@ -246,6 +248,12 @@ fn left_to_others(queue: &[Queue], station: &str) -> i64 {
     let (ours, others): (Vec<_>, Vec<_>) = queue.iter().partition(|queue| queue.station == station);
     let (waiting, own) = ours.first().map_or((0, 0), |ours| (ours.waiting, ours.own));
     if waiting < own { waiting } else { waiting + others.into_iter().map(Queue::of_all).sum::<i64>() }
+}
+
+/// Lets nothing end later than if it were given or asked for now. Before the plant's clock was set back it may have been; otherwise
+/// whoever is gone would keep it for as long as the clock was set back.
+pub(super) fn shorten(to: &mut dyn Database) -> Result<(), DatabaseError> {
+    to.execute(sql::SHORTEN, values![LEASE_MS, WAITING_MS]).map(drop)
 }
 
 /// Gives the board of this name to `holder`; its row is locked.

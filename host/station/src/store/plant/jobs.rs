@@ -8,7 +8,7 @@ use strum::{Display, EnumString, VariantArray};
 
 use super::super::database::{Database, DatabaseError, FromValue, Row, Value, values};
 use super::super::{AgainError, By, Deed, Snapshot, StoreError, retest_policy, statements as sql};
-use super::boards::{LEASE_MS, Lease, hold};
+use super::boards::{LEASE_MS, Lease, hold, shorten};
 use super::{Plant, arrived};
 use crate::ids;
 use crate::plan::{Again, Plan};
@@ -270,6 +270,7 @@ impl Plant {
 /// Claims a job and its board, or neither: the rows are locked until the transaction ends.
 fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, DatabaseError> {
     let Worker { holder, station, plans, once, has, unfit } = worker;
+    shorten(to)?;
     to.execute(sql::EXHAUSTED_JOBS, &[])?;
     let [once, plans, has] = [once, plans, has].map(|words| words.join(" "));
     let unfit = serde_json::to_string(unfit)?;

@@ -4,6 +4,7 @@ mod again;
 mod boards;
 mod changed;
 pub(crate) mod claims;
+mod clock_set;
 mod commands;
 pub(crate) mod disk;
 mod rate;
