@@ -136,6 +136,7 @@ statements! {
     pub(super) OUTBOX_LEFT = "outbox-left.sql";
     pub(super) OUTBOX_AT_ONCE = "outbox-at-once.sql";
     pub(super) OUTBOX_STATE = "outbox-state.sql";
+    pub(super) OUTBOX_SINCE = "outbox-since.sql";
     pub(super) OUTBOX_DONE = "outbox-done.sql";
     pub(super) OUTBOX_FAILED = "outbox-failed.sql";
     pub(super) OUTBOX_DEAD = "outbox-dead.sql";

@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::super::database::values;
 use super::super::{Snapshot, StoreError, statements as sql};
 use super::{Entry, FIRST_WAIT_MS, Kind, LONGEST_WAIT_MS, entry, said};
-use crate::ids;
 use crate::said::{Said, as_text, as_text_if_any};
+use crate::{clock, ids};
 
 /// The most entries of a sink that are listed as waiting for a person: a sink may have refused everything for years.
 pub(crate) const DEAD_SHOWN: u32 = 100;
@@ -64,11 +64,20 @@ impl Snapshot {
     /// [`StoreError`] when the database cannot be read.
     pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
         let waits = values![FIRST_WAIT_MS, LONGEST_WAIT_MS];
-        self.rows("to tell what is to be sent", sql::OUTBOX_STATE, waits, |row| {
+        let mut unsent = self.rows("to tell what is to be sent", sql::OUTBOX_STATE, waits, |row| {
             let since_ms = ids::made_ms(row.text(4)?);
             let (sink, entries, results, dead) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
             Ok(Unsent { sink, entries, results, dead, since_ms, said: said(row, 5)? })
-        })
+        })?;
+        let now_ms = clock::now_ms();
+        for Unsent { sink, since_ms, .. } in unsent.iter_mut().filter(|unsent| unsent.since_ms > now_ms) {
+            // Its id was drawn behind those of a clock that was ahead.
+            let of = values![&**sink, &Kind::Run];
+            let first =
+                self.rows("to tell since when", sql::OUTBOX_SINCE, of, |row| row.get::<Option<i64>>(0))?;
+            *since_ms = first.into_iter().flatten().fold(*since_ms, i64::min);
+        }
+        Ok(unsent)
     }
 
     /// How much this sink does not have, without a look at what others do not have.

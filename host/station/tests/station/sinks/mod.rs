@@ -5,6 +5,7 @@ mod events;
 mod folder;
 mod many;
 mod post;
+mod since;
 mod told;
 
 use std::fs;
