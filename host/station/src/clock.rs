@@ -1,6 +1,7 @@
 //! The wall clock.
 
 use std::fs;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::LazyLock;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -95,14 +96,17 @@ fn at(ms: i64, zone: &TimeZone) -> Zoned {
     Timestamp::from_millisecond(ms).unwrap_or_default().to_zoned(zone.clone())
 }
 
-/// The start of the day of `ms` by the station's clock, in milliseconds since 1970, UTC.
+/// The day of `ms` by the station's clock, from midnight to midnight, in milliseconds since 1970, UTC.
 #[must_use]
-pub(crate) fn midnight_ms(ms: i64) -> i64 {
-    midnight(&local(ms)).unwrap_or(ms)
+pub(crate) fn day_ms(ms: i64) -> Range<i64> {
+    day(&local(ms)).unwrap_or(ms..i64::MAX)
 }
 
-fn midnight(moment: &Zoned) -> Option<i64> {
-    moment.start_of_day().ok().map(|midnight| midnight.timestamp().as_millisecond())
+/// It has 23 or 25 hours when clocks are changed.
+fn day(moment: &Zoned) -> Option<Range<i64>> {
+    let [first, next] = [moment.start_of_day(), moment.tomorrow().and_then(|next| next.start_of_day())]
+        .map(|midnight| midnight.ok().map(|midnight| midnight.timestamp().as_millisecond()));
+    Some(first?..next?)
 }
 
 /// The zone that the variable `TZ` names, or describes by a rule (POSIX.1-2024, 8.3).
@@ -142,11 +146,24 @@ mod tests {
             (shown(&europe, DAY), shown(&europe, DAY - 180 * 24 * HOUR)),
             ("22 01:00".into(), "26 02:00".into())
         );
-        assert_eq!(midnight(&at(DAY, &india)), Some(DAY - 11 * HOUR / 2));
-        assert_eq!(midnight(&at(DAY + 23 * HOUR, &europe)), Some(DAY + 23 * HOUR));
+        let midnight = DAY - 11 * HOUR / 2;
+        assert_eq!(day(&at(DAY, &india)), Some(midnight..midnight + 24 * HOUR));
+        assert_eq!(day(&at(DAY + 23 * HOUR, &europe)), Some(DAY + 23 * HOUR..DAY + 47 * HOUR));
         // Some write a colon first, which POSIX.1-2024, 8.3 has only for values that are not rules.
         let with_colon = zone(":IST-5:30").unwrap();
         assert_eq!(shown(&with_colon, DAY), "22 05:30");
         assert_eq!(zone("no/such/place"), None);
+    }
+
+    #[test]
+    fn the_days_on_which_clocks_are_changed_are_an_hour_shorter_and_longer() {
+        let europe = zone("CET-1CEST,M3.5.0,M10.5.0/3").unwrap();
+        // 29 March 2026, midnight UTC+1, and 25 October 2026, midnight UTC+2.
+        for (midnight, hours) in [(1_774_738_800_000, 23), (1_792_879_200_000, 25)] {
+            for hour in [0, hours - 1] {
+                let of = day(&at(midnight + hour * HOUR, &europe));
+                assert_eq!(of, Some(midnight..midnight + hours * HOUR), "{hour}");
+            }
+        }
     }
 }

@@ -1,5 +1,7 @@
 //! The page itself.
 
+use std::ops::Range;
+
 use axum::extract::State;
 use axum::response::{Html, IntoResponse as _, Response};
 use maud::{Markup, html};
@@ -176,7 +178,8 @@ fn or_why(today: Result<Markup, Trouble>) -> Markup {
 }
 
 async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
-    let period = Period { from_ms: clock::midnight_ms(clock::now_ms()), ..Period::default() };
+    let Range { start: from_ms, end: until_ms } = clock::day_ms(clock::now_ms());
+    let period = Period { from_ms, until_ms };
     let wanted = Wanted { period, ..Wanted::default() };
     let look = move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.unsent()?));
     let (counted, unsent) = app.look(visit, look).await?;

@@ -190,9 +190,9 @@ fn a_unit_belongs_to_the_lane_and_the_day_of_its_first_judgement() {
     assert_eq!(yields(&made.now(), &second, By::Plan).unwrap().flips, Vec::new());
 }
 
-/// A shift counts its own boards, whenever it is midnight in UTC.
+/// A shift counts its own boards, whenever it is midnight in UTC, and whatever a clock that was ahead has dated.
 #[test]
-fn the_day_so_far_begins_at_midnight_by_the_clock_on_the_wall() {
+fn the_day_so_far_is_the_one_by_the_clock_on_the_wall() {
     let now_ms = now_ms();
     // Half past one at night, in a zone that is as far east of UTC as that takes (POSIX.1-2024, 8.3 counts to the west).
     let east = (90 - now_ms / 60_000).rem_euclid(1440);
@@ -200,7 +200,7 @@ fn the_day_so_far_begins_at_midnight_by_the_clock_on_the_wall() {
     let sign = if east > 0 { '-' } else { '+' };
     let zone = format!("XYZ{sign}{:02}:{:02}", east.abs() / 60, east.abs() % 60);
     let mut made = Made::new();
-    for (serial, hours) in [("S1", 3), ("S2", 1)] {
+    for (serial, hours) in [("S1", 3), ("S2", 1), ("S3", -24)] {
         made.run(&Run { started_ms: now_ms - hours * HOUR_MS, ..Run::of(serial, End::Pass) });
     }
     let today = Served::in_zone(made, &zone).page("/today");
