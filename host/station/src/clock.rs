@@ -32,6 +32,11 @@ impl Moment {
         Self { since_start_ms: since_start_ms() }
     }
 
+    /// Milliseconds since the computer was started.
+    pub(crate) fn since_start_ms(self) -> i64 {
+        self.since_start_ms
+    }
+
     /// The time that has passed since then.
     pub(crate) fn elapsed(self) -> Duration {
         let passed_ms = since_start_ms().saturating_sub(self.since_start_ms);

@@ -12,7 +12,7 @@ use futures_util::future;
 use serde::{Deserialize, Serialize};
 
 use super::page;
-use crate::clock;
+use crate::clock::Moment;
 use crate::engine::Engine;
 use crate::floor::{Act, CHOSEN, Scan, ScanError};
 use crate::said::{Said, Saying};
@@ -38,7 +38,8 @@ pub(super) struct Scanned {
     /// Whether that was too long ago.
     #[serde(default)]
     is_over: bool,
-    /// The lane that a page without a script had chosen when it was made, and when that was, in milliseconds since 1970.
+    /// The lane that a page without a script had chosen when it was made, and when that was, in milliseconds since the computer
+    /// was started, which do not jump when its clock is set.
     #[serde(default)]
     chosen: String,
     #[serde(default)]
@@ -177,7 +178,10 @@ impl Scanned {
     /// Whether its lane was chosen too long ago.
     fn is_over(&self) -> bool {
         let is_as_made = self.chosen == self.lane;
-        self.is_over || is_as_made && clock::now_ms().saturating_sub(self.made_ms) > CHOSEN.as_millis() as i64
+        let passed = Moment::now().since_start_ms().saturating_sub(self.made_ms);
+        // A page of before the computer's last start may be of any age.
+        let is_in_time = (0..=CHOSEN.as_millis() as i64).contains(&passed);
+        self.is_over || is_as_made && !is_in_time
     }
 
     fn answer(&self, lane: Option<String>, said: Result<String, String>, armed: Option<String>) -> ScanReply {

@@ -8,7 +8,7 @@ use maud::{Markup, html};
 
 use super::acts::ScanReply;
 use super::lane::lane;
-use crate::clock;
+use crate::clock::{self, Moment};
 use crate::floor::CHOSEN;
 use crate::history::Period;
 use crate::history::rate::Rate;
@@ -149,7 +149,7 @@ fn by_hand(visit: &Visit, now: &Now, unscripted: Option<&str>) -> Markup {
             input type="hidden" name="typed" value="true";
             @if let Some(chosen) = unscripted.filter(|chosen| !chosen.is_empty()) {
                 input type="hidden" name="chosen" value=(chosen);
-                input type="hidden" name="made_ms" value=(clock::now_ms());
+                input type="hidden" name="made_ms" value=(Moment::now().since_start_ms());
             }
             @if now.lanes.len() > 1 {
                 label { (visit.say("hand.lane")) " "

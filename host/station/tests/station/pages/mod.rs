@@ -3,6 +3,7 @@
 mod access;
 mod browser;
 mod changes;
+mod clock_set;
 mod fuzz;
 mod gone;
 mod guesses;
