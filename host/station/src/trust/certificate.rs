@@ -113,7 +113,7 @@ fn within<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a (dyn Error + 'stat
 
 fn moment(time: UnixTime) -> String {
     let ms = i64::try_from(time.as_secs()).unwrap_or(i64::MAX).saturating_mul(1000);
-    clock::local(ms).strftime("%Y-%m-%d %H:%M").to_string()
+    clock::local(ms).strftime("%Y-%m-%d %H:%M %:z").to_string()
 }
 
 /// A name of a certificate without its kind: of `DnsName("mes.example")` the text in quotes.

@@ -155,7 +155,7 @@ fn saved(visit: &Visit, shown: &Shown) -> Markup {
     html! {
         p.saved {
             span { (visit.say("lane.saved")) } " "
-            time datetime=(format!("{:.3}", at.timestamp())) title=(at.strftime("%Y-%m-%d %H:%M:%S").to_string()) {
+            time datetime=(format!("{:.3}", at.timestamp())) title=(at.strftime("%Y-%m-%d %H:%M:%S %:z").to_string()) {
                 (at.strftime("%Y-%m-%d %H:%M").to_string())
             }
         }

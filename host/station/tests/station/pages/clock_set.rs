@@ -29,3 +29,15 @@ fn without_a_script_a_lane_is_chosen_for_fifteen_seconds_however_the_clock_is_se
         until("a scan in time", || !is_over(set, 0));
     }
 }
+
+/// In one hour of the year a time without its offset is either of two.
+#[test]
+fn when_a_verdict_was_saved_is_shown_with_the_offset_to_whoever_points_at_it() {
+    let station = Station::private(1);
+    let serving = Serving::of(station.command().env("TZ", "IST-5:30"));
+    serving.here().post("/scan", &[("text", SERIALS[0])]).until_taken();
+    let page = serving.here().get("/").until("lane pass");
+    let (_, saved) = page.split_once("class=\"saved\"").unwrap();
+    let (title, _) = saved.split_once("title=\"").unwrap().1.split_once('"').unwrap();
+    assert!(title.ends_with(" +05:30"), "{title}");
+}

@@ -63,10 +63,12 @@ fn certified() -> TempDir {
 fn a_certificate_out_of_its_time_is_told_with_its_date_and_the_clock_s() {
     let ends = Ends::new();
     let late = ends.told("localhost", ends.ours.path(), 46 * DAY);
-    let until = format!("was valid until {}, and this computer's clock says 20", ends.date("-enddate"));
+    let until =
+        format!("was valid until {} +00:00, and this computer's clock says 20", ends.date("-enddate"));
     assert!(late.contains("the certificate of localhost") && late.contains(&until), "{late}");
     let early = ends.told("localhost", ends.ours.path(), -5 * DAY);
-    let from = format!("is valid from {} on, and this computer's clock says 20", ends.date("-startdate"));
+    let from =
+        format!("is valid from {} +00:00 on, and this computer's clock says 20", ends.date("-startdate"));
     assert!(early.contains("the certificate of localhost") && early.contains(&from), "{early}");
 }
 

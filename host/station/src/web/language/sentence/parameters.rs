@@ -203,10 +203,10 @@ impl Words {
     }
 }
 
-/// A moment by the station's clock.
+/// A moment by the station's clock, with its offset: in one hour of the year a time without it is either of two.
 fn moment(value: &Value) -> Option<String> {
     let at: Timestamp = value.as_str()?.parse().ok()?;
-    Some(clock::local(at.as_millisecond()).strftime("%Y-%m-%d %H:%M").to_string())
+    Some(clock::local(at.as_millisecond()).strftime("%Y-%m-%d %H:%M %:z").to_string())
 }
 
 /// The late rows that these parameters describe, if they do.

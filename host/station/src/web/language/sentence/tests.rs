@@ -322,7 +322,7 @@ fn a_verdict_and_an_hour_are_told_as_the_lane_says_them() {
     assert!(text("zh", &wrong).starts_with("合格样板 CC1 的结果是“不合格”；"), "{}", text("zh", &wrong));
     let when = "2026-11-27T16:48:24+01:00";
     let passed = judged("unit-passed-already", &json!({ "serial": "CC1", "when": when }));
-    let here = crate::clock::local(1_795_794_504_000).strftime("%Y-%m-%d %H:%M");
+    let here = crate::clock::local(1_795_794_504_000).strftime("%Y-%m-%d %H:%M %:z");
     assert!(text("de", &passed).contains(&format!("bestanden, {here}; ")), "{}", text("de", &passed));
 }
 
