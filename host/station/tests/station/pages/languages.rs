@@ -126,6 +126,23 @@ fn the_verdict_on_the_mock_board_is_not_shown_as_that_of_the_board_in_the_lane()
     }
 }
 
+/// The lanes are in local time, so a day without its zone would be taken for the day of the lanes.
+#[test]
+fn the_days_that_the_history_asks_for_are_said_to_be_of_utc() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    for (language, said) in [
+        ("en", ["<span>From (UTC)<", "<span>To (UTC, that day included)<"]),
+        ("de", ["<span>Von (UTC)<", "<span>Bis (UTC, Tag eingeschlossen)<"]),
+        ("zh", ["<span>起始日期 (UTC)<", "<span>截止日期（UTC，含当日）<"]),
+    ] {
+        for path in ["/history", "/yield", "/pareto"] {
+            let page = serving.here().get(path).with("accept-language", language).send().text();
+            said.iter().for_each(|said| assert!(page.contains(said), "{path}: {said}: {page}"));
+        }
+    }
+}
+
 /// Its word and its colour are those of every PASS.
 #[test]
 fn a_lane_says_of_a_board_that_a_program_plays_that_no_hardware_was_tested() {
