@@ -110,9 +110,15 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(spelt).collect())
 }
 
+/// Each of `lines` as [`plain`] spells it, so that none of them begins another, whatever names it holds.
+pub fn plain_lines<Line: AsRef<str>>(lines: impl IntoIterator<Item = Line>) -> String {
+    lines.into_iter().map(|line| plain(line.as_ref()).into_owned()).collect::<Vec<_>>().join("\n")
+}
+
 /// Whether a terminal may obey `letter`, or text with it may read as another: control characters, line separators, noncharacters and
 /// the marks of text direction.
-pub(crate) fn is_unfit(letter: char) -> bool {
+#[must_use]
+pub fn is_unfit(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
@@ -134,6 +140,11 @@ mod tests {
         assert_eq!(plain("a\u{1b}[2Jb\u{9b}\n"), "a\\u{1b}[2Jb\\u{9b}\\n");
         assert_eq!(plain("\u{202e}evil"), "\\u{202e}evil");
         assert!(matches!(plain("façade.pgm"), Cow::Borrowed(_)));
+    }
+
+    #[test]
+    fn a_name_begins_no_line_of_its_own() {
+        assert_eq!(plain_lines(["wrote a\nPASS", "b"]), "wrote a\\nPASS\nb");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::io::{self, IsTerminal as _, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anstream::AutoStream;
-use halfrow::words::plain;
+use halfrow::words::{is_unfit, plain};
 
 /// The result could not be written to stdout.
 #[derive(Debug, thiserror::Error)]
@@ -69,6 +69,11 @@ pub fn tell(text: &str) {
     }
 }
 
+/// Like [`tell`], for one line that holds names from outside: their control characters are spelt out.
+pub fn tell_line(line: &str) {
+    tell(&plain(line));
+}
+
 /// Says on stderr what went wrong, as far as stderr takes it.
 pub fn error(what: &dyn Display) {
     diagnose(&format_args!("error: {what}"));
@@ -102,7 +107,7 @@ pub(crate) fn diagnose_raw(text: &str) {
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }
 
-/// `text` for a terminal: newlines, tabs and colours are kept, and other control characters are spelt out as in JSON.
+/// `text` for a terminal: newlines, tabs and colours are kept, and whatever else it may obey is spelt out as in JSON.
 fn harmless(text: &str) -> Cow<'_, str> {
     let colours = |text: &str| {
         let digits = text
@@ -110,7 +115,7 @@ fn harmless(text: &str) -> Cow<'_, str> {
             .trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == ';');
         digits.strip_prefix('m').map(|rest| text.len() - rest.len())
     };
-    let obeyed = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
+    let obeyed = |letter: char| is_unfit(letter) && !matches!(letter, '\n' | '\t');
     let mut shown = String::new();
     let mut rest = text;
     while let Some(place) = rest.find(obeyed) {
@@ -157,8 +162,9 @@ mod tests {
     fn a_terminal_is_told_colours_and_nothing_else_to_do() {
         let title = "\u{1b}[1mPASS\u{1b}[0m\n\u{1b}]0;x\u{7}a\u{9b}2Jb\u{1b}[2Jc\td";
         assert_eq!(harmless(title), "\u{1b}[1mPASS\u{1b}[0m\n\\u001b]0;x\\u0007a\\u009b2Jb\\u001b[2Jc\td");
-        let name = serde_json::json!({ "name": "A\u{9b}31m\u{7f}Z\u{1b}[8m" });
+        let name = serde_json::json!({ "name": "A\u{9b}31m\u{7f}Z\u{1b}[8m\u{202e}" });
         assert_eq!(serde_json::from_str::<serde_json::Value>(&harmless(&name.to_string())).unwrap(), name);
+        assert!(!harmless(&name.to_string()).contains(is_unfit));
         assert!(matches!(harmless("façade\n"), Cow::Borrowed(_)));
     }
 }

@@ -21,6 +21,7 @@ mod lenses;
 mod load;
 mod made_files;
 mod measured;
+mod names;
 mod origins;
 mod outputs;
 mod paper;

@@ -12,7 +12,7 @@ use crate::exit::Exit;
 use halfrow::link::discovery::{self, Access, Answer, Found};
 use halfrow::link::kinds::{Form, KINDS};
 use halfrow::target::{BoardKind, Target, TargetError};
-use halfrow::words::{count, plain};
+use halfrow::words::{count, plain_lines};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -122,7 +122,7 @@ fn text(entry: &Entry<'_>) -> String {
         lines.push(format!("    {}", names.join(", ")));
     }
     lines.push(format!("    {}", state(device)));
-    lines.join("\n")
+    plain_lines(lines)
 }
 
 fn bitstream_text(board: &BitstreamBoard) -> String {
@@ -137,9 +137,9 @@ fn bitstream_text(board: &BitstreamBoard) -> String {
 /// The result of asking, or else of looking at the device from outside.
 fn state(device: &Found) -> String {
     match &device.answer {
-        Some(Answer::Board { name, .. }) => return format!("a halfrow board answers: {}", plain(name)),
+        Some(Answer::Board { name, .. }) => return format!("a halfrow board answers: {name}"),
         Some(Answer::Held) => return "a halfrow board answers, which another host holds".to_owned(),
-        Some(Answer::Foreign { reason }) => return format!("something else answers: {}", plain(reason)),
+        Some(Answer::Foreign { reason }) => return format!("something else answers: {reason}"),
         Some(Answer::Silent) => return "nothing answers".to_owned(),
         Some(Answer::Babble { bytes }) => {
             return format!(
@@ -150,7 +150,7 @@ fn state(device: &Found) -> String {
         Some(Answer::Busy) => return "busy: it is open elsewhere".to_owned(),
         Some(Answer::Failed { reason }) => {
             let free = if device.access == Access::Free { "free, but " } else { "" };
-            return format!("{free}cannot be asked: {}", plain(reason));
+            return format!("{free}cannot be asked: {reason}");
         }
         None => {}
     }
@@ -225,6 +225,29 @@ mod tests {
         let holders = vec![Holder { process: 7, program: "sh".to_owned() }];
         device.access = Access::Busy { holders };
         assert_eq!(state(&device), "busy: sh (process 7) has it open");
+    }
+
+    /// Whoever builds a device or a program calls it anything.
+    #[test]
+    fn a_device_begins_no_line_and_conceals_none() {
+        let name = "\u{1b}[8mq\nPASS";
+        let port = "serial:/dev/ttyUSB99".parse().unwrap();
+        let holders = vec![Holder { process: 7, program: name.to_owned() }];
+        let device = Found {
+            target: format!("serial:/dev/{name}"),
+            summary: name.to_owned(),
+            names: vec![format!("/dev/serial/{name}").into()],
+            access: Access::Busy { holders },
+            ..Found::named(&port)
+        };
+        let spelt = "\\u{1b}[8mq\\nPASS";
+        let expected = [
+            format!("serial:/dev/{spelt}"),
+            format!("    {spelt}"),
+            format!("    /dev/ttyUSB99, /dev/serial/{spelt}"),
+            format!("    busy: {spelt} (process 7) has it open"),
+        ];
+        assert_eq!(text(&Entry::Device(&device)), expected.join("\n"));
     }
 
     #[test]

@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         if context.json {
             written.push(json!({ "path": place, "name": builtin.name(), "description": description }));
         } else {
-            console::tell(&format!("{place:<28} {description}"));
+            console::tell_line(&format!("{place:<28} {description}"));
         }
     }
     if context.json {

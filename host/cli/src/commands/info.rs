@@ -9,7 +9,7 @@ use crate::document::result_text;
 use crate::exit::Exit;
 use halfrow::board::{Board, Status};
 use halfrow::result::BoardReport;
-use halfrow::words::plain;
+use halfrow::words::plain_lines;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -41,11 +41,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 fn text(board: &BoardReport, status: &Status) -> String {
     let mut lines = vec![format!("{:<19} {} ({})", "board", board.target, board.kind)];
     if let Some(identity) = &board.identity {
-        lines.extend(
-            identity.lines().into_iter().map(|(name, value)| format!("{name:<19} {}", plain(&value))),
-        );
+        lines.extend(identity.lines().into_iter().map(|(name, value)| format!("{name:<19} {value}")));
     }
     lines.push(String::new());
     lines.extend(status.counters().into_iter().map(|(name, count)| format!("{name:<19} {count}")));
-    lines.join("\n")
+    plain_lines(lines)
 }

@@ -22,7 +22,7 @@ use halfrow::frames::preview::RgbImage;
 use halfrow::frames::{FrameFile, landscape};
 use halfrow::result::sha256;
 use halfrow::tables::KernelFile;
-use halfrow::words::count;
+use halfrow::words::{count, plain_lines};
 use halfrow_lab::training;
 use halfrow_lab::training::{
     Gains, Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train,
@@ -173,7 +173,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
         held_out_text(&trained),
         mean_noise_gain(&trained.kernel)
     ));
-    console::tell(&format!("wrote {}", arguments.output.display()));
+    console::tell_line(&format!("wrote {}", arguments.output.display()));
     Ok(Exit::Pass)
 }
 
@@ -246,7 +246,7 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     lines.extend(
         noise.map(|Spread { mean, least, most }| format!("  noise gain {mean:.3} ({least:.3} to {most:.3})")),
     );
-    print(&lines.join("\n"))?;
+    print(&plain_lines(&lines))?;
     Ok(Exit::Pass)
 }
 

@@ -16,7 +16,7 @@ use crate::exit::Exit;
 use halfrow::frames::{self, HeatMap};
 use halfrow::lenses::LensContentError;
 use halfrow::optics::{Optics, OpticsError, TablesBy};
-use halfrow::words::{count, grouped, verb};
+use halfrow::words::{count, grouped, plain_lines, verb};
 use halfrow_lab::{Amounts, Residuals};
 
 #[derive(Debug, Args)]
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return Ok(Exit::Pass);
     };
     console::tell(&figures.text());
-    console::tell(&format!("wrote {}, from 0 (dark) to {most:.3} px (bright)", path.display()));
+    console::tell_line(&format!("wrote {}, from 0 (dark) to {most:.3} px (bright)", path.display()));
     Ok(Exit::Pass)
 }
 
@@ -131,7 +131,7 @@ impl<'a> Figures<'a> {
         ];
         lines.extend(self.errors());
         lines.extend(self.illegal.as_ref().map(|error| format!("no board takes these tables: {error}")));
-        lines.join("\n")
+        plain_lines(lines)
     }
 
     /// Lines with the errors that each way leaves.

@@ -15,7 +15,7 @@ use crate::exit::Exit;
 use halfrow::board::{Board, RetryLimit};
 use halfrow::link_test::{self, Errors, Figures, LinkTestError, Rate, RoundTrips, Throughput};
 use halfrow::result::BoardReport;
-use halfrow::words::{count, grouped, verb};
+use halfrow::words::{count, grouped, plain, verb};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -77,7 +77,7 @@ fn failed(error: LinkTestError, board: &BoardReport, limit: RetryLimit, context:
 }
 
 fn of_board(board: &BoardReport) -> String {
-    format!("{:<12} {} ({})", "board", board.target, board.kind)
+    plain(&format!("{:<12} {} ({})", "board", board.target, board.kind)).into_owned()
 }
 
 /// The figures, and whether a board can be judged over such a link.

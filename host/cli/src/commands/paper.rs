@@ -91,7 +91,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return Ok(exit);
     }
     conclude(&exhibits);
-    console::tell(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()));
+    console::tell_line(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()));
     Ok(exit)
 }
 

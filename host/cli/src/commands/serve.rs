@@ -10,6 +10,7 @@ use crate::exit::Exit;
 use crate::serve::{Hosted, Name, Port, Pty, ServeError, TcpPlace, Traffic};
 use crate::signals;
 use halfrow::target::Target;
+use halfrow::words::plain;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -55,6 +56,6 @@ fn serve_pty(
     let name = arguments.link.as_ref().map(|path| Name::link(path, pty.path())).transpose();
     let name = name.map_err(Failure::call)?;
     let path = arguments.link.as_deref().filter(|_| name.is_some()).unwrap_or(pty.path());
-    print(&format!("serial:{}", path.display()))?;
+    print(&plain(&format!("serial:{}", path.display())))?;
     Ok(pty.serve(board, ended))
 }

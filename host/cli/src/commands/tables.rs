@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return Ok(Exit::Pass);
     }
     for path in format.places(&arguments.output) {
-        console::tell(&format!("wrote {}: {}", path.display(), chosen.source));
+        console::tell_line(&format!("wrote {}: {}", path.display(), chosen.source));
     }
     if outside > 0 {
         console::tell(&format!("{} outside the image circle: {how}", count(outside, "row")));

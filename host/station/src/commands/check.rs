@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use halfrow::result::Problem;
-use halfrow::words::{count, verb};
+use halfrow::words::{count, plain_lines, verb};
 use serde_json::json;
 
 use super::{Failure, document};
@@ -78,5 +78,5 @@ fn text(checked: &Checked) -> String {
     let (runs, pieces) = (count(checked.runs, "run"), count(checked.evidence, "piece"));
     let faults = count(checked.faults.len(), "fault");
     lines.push(format!("{runs} and {pieces} of evidence were read, {faults} found"));
-    lines.join("\n")
+    plain_lines(lines)
 }

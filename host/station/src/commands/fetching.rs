@@ -4,8 +4,9 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
+use halfrow::words::plain_lines;
+
 use super::beginning::{NoPlant, SettingsFile};
-use super::plan::in_lines;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
@@ -31,7 +32,7 @@ pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
         said.push(format!("{version}, number {number}{}", if is_new { NEW } else { "" }));
     }
     let named = published.plans.iter().zip(said).map(|(plan, said)| format!("{plan} {said}"));
-    print(&in_lines(named))
+    print(&plain_lines(named))
 }
 
 /// Fetches them when a station begins its work. If that fails, the station goes on with the copies that it has, unless

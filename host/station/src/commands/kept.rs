@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use halfrow::words::{count, verb};
+use halfrow::words::{count, plain_lines, verb};
 use halfrow_program::number::counted;
 use serde_json::json;
 
 use super::looking::Data;
 use super::why::{at_station, person};
-use super::{Failure, document, print};
+use super::{Failure, document, print, print_line};
 use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
@@ -49,10 +49,10 @@ pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
     }
     let mut lines: Vec<_> = faults.iter().chain(left_out).map(|fault| format!("fault: {fault}")).collect();
     if lines.is_empty() {
-        return print(&told);
+        return print_line(&told);
     }
     lines.push(told);
-    console::tell(&lines.join("\n"));
+    console::tell(&plain_lines(&lines));
     Ok(Exit::Error)
 }
 
@@ -69,7 +69,7 @@ pub(super) struct Restore {
 pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
     let copied = kept::restore(&Folder::new(&arguments.from), &arguments.data)?;
     let (runs, pieces) = (count(copied.runs, "run"), count(copied.evidence, "piece"));
-    print(&format!("{runs} and {pieces} of evidence were read back{}", with_unknown(&copied)))
+    print_line(&format!("{runs} and {pieces} of evidence were read back{}", with_unknown(&copied)))
 }
 
 /// What a copy has beyond what its rows name.

@@ -40,6 +40,7 @@ mod yields;
 use clap::{ArgAction, Parser, Subcommand};
 
 pub use document::{code, failure};
+use halfrow::words::plain;
 
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
@@ -220,6 +221,11 @@ impl From<StoreError> for Failure {
         };
         Self { exit, error: error.into() }
     }
+}
+
+/// Prints a result in one line, whatever names it holds.
+fn print_line(line: &str) -> Result<Exit, Failure> {
+    print(&plain(line))
 }
 
 /// Prints a result, which is the command's only one.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::beginning::{Disk, SettingsFile, sinks};
 use super::looking::{either, table, time};
 use super::why::{Why, at_station};
-use super::{Failure, print};
+use super::{Failure, print, print_line};
 use crate::exit::Exit;
 use crate::outbox::all;
 use crate::settings::Settings;
@@ -109,7 +109,7 @@ fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> 
     if released == 0 {
         return Err(Failure::call(NotDead { what: what.to_owned() }));
     }
-    print(&format!("{released} of {what} {} tried again", verb(released, "are")))
+    print_line(&format!("{released} of {what} {} tried again", verb(released, "are")))
 }
 
 fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
@@ -126,7 +126,7 @@ fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<
             "; `halfrow-station outbox release --sink {sink}` has {dead} more tried, which wait for a person"
         ),
     };
-    print(&format!("{again} of {sink} {} sent again{rest}", verb(again, "are")))
+    print_line(&format!("{again} of {sink} {} sent again{rest}", verb(again, "are")))
 }
 
 fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
@@ -138,7 +138,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
         return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
     }
     let forgotten = store.forget_sink(sink, why.by())?;
-    print(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are")))
+    print_line(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are")))
 }
 
 /// Sends to every sink what it does not have yet, and prints what is left.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use halfrow::words::{count, plain, span};
+use halfrow::words::{count, plain_lines, span};
 
 use super::beginning::SettingsFile;
 use super::{Failure, fetching, print, publish};
@@ -91,12 +91,7 @@ fn head(plan: &Plan) -> String {
     if !plan.production.require_hardware {
         lines.push("any kind of board is judged, so no run counts as production".to_owned());
     }
-    in_lines(lines)
-}
-
-/// One line each, whatever characters the names in a plan have.
-pub(super) fn in_lines(lines: impl IntoIterator<Item = String>) -> String {
-    lines.into_iter().map(|line| plain(&line).into_owned()).collect::<Vec<_>>().join("\n")
+    plain_lines(lines)
 }
 
 fn variant(name: &str, selected: &Selected) -> String {
@@ -104,7 +99,7 @@ fn variant(name: &str, selected: &Selected) -> String {
         if name.is_empty() { "no variant that is named".to_owned() } else { format!("variant {name}") };
     let steps = selected.steps.iter().zip(1..).map(|(step, seq)| format!("  {seq} {}", told(step)));
     let limits = selected.limits.iter().map(|limit| format!("  limit {}", bounds(limit)));
-    in_lines(std::iter::once(title).chain(steps).chain(limits))
+    plain_lines(std::iter::once(title).chain(steps).chain(limits))
 }
 
 fn told(step: &Step) -> String {

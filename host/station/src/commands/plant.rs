@@ -9,7 +9,7 @@ use halfrow_program::number::counted;
 use super::beginning::{SettingsFile, Signal, make_data, plant};
 use super::fetching::{address, published};
 use super::why::{Why, at_plant};
-use super::{Failure, check, print};
+use super::{Failure, check, print, print_line};
 use crate::check::check_plant;
 use crate::console;
 use crate::exit::Exit;
@@ -78,12 +78,12 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         Action::Prepare => {
             let address = address()?;
             let version = Plant::prepare(&address.patient())?;
-            print(&format!("the plant {address} has version {version}"))
+            print_line(&format!("the plant {address} has version {version}"))
         }
         Action::Forget { station, why } => {
             let mut plant = at_plant(&address()?, &why.operator, &format!("plant forget {station}"))?;
             if plant.forget(station, why.by())? {
-                return print(&format!("the next folder that says it is {station} is taken for it"));
+                return print_line(&format!("the next folder that says it is {station} is taken for it"));
             }
             Err(Failure::call(NoStation { station: station.clone() }))
         }

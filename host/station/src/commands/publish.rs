@@ -4,14 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use halfrow::words::plain;
 use serde::Serialize;
 
 use super::beginning::SettingsFile;
 use super::fetching::{address, published};
 use super::looking::{either, table, time};
 use super::why::{Why, entered_at};
-use super::{Failure, print};
+use super::{Failure, print, print_line};
 use crate::exit::Exit;
 use crate::history::PlanName;
 use crate::plan::Plan;
@@ -203,7 +202,7 @@ impl Desk<'_> {
         if !self.at.publish(&statement, &signature, bundle)? {
             return Err(Failure::error(PublishError::TooLate { plan: name.to_string() }));
         }
-        print(&plain(&format!("{name} {version} holds, as number {}", statement.number)))
+        print_line(&format!("{name} {version} holds, as number {}", statement.number))
     }
 }
 

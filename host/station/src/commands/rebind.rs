@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use halfrow::words::plain_lines;
 
 use super::why::{Why, at_station};
 use super::{Failure, print};
@@ -44,7 +45,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         || "is bound to the device of the next board that is judged under it".to_owned(),
         |device| format!("is bound to device {device}"),
     );
-    print(&format!("{serial} {from_now}\naudit     {}, by {operator}", bound.id))
+    print(&plain_lines([format!("{serial} {from_now}"), format!("audit     {}, by {operator}", bound.id)]))
 }
 
 impl From<RebindError> for Failure {

@@ -10,6 +10,7 @@ use halfrow::link;
 use halfrow::report::wording::says;
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
+use halfrow::words::plain_lines;
 use halfrow_program::number::seconds;
 use serde_json::json;
 
@@ -119,7 +120,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Err(RunError::Unsaved { .. }) = &ended
         && !arguments.json
     {
-        console::tell(&format!("UNSAVED {serial}: keep this board apart; it has no verdict"));
+        console::tell_line(&format!("UNSAVED {serial}: keep this board apart; it has no verdict"));
     }
     let saved = ended?;
     let exit = exit(&saved);
@@ -258,7 +259,7 @@ fn text(saved: &Saved, plan: &Plan) -> String {
     };
     lines.push(format!("run       {}, {judgement}", record.run.id));
     lines.push(format!("record    {}", stored.record_sha256));
-    lines.join("\n")
+    plain_lines(lines)
 }
 
 fn why_no_production(plan: &Plan, record: &Record) -> &'static str {

@@ -1,9 +1,10 @@
 //! `halfrow-station token`
 
 use clap::{Args, Subcommand};
+use halfrow::words::plain_lines;
 
 use super::beginning::{SettingsFile, make_data};
-use super::{Failure, print};
+use super::{Failure, print, print_line};
 use crate::exit::Exit;
 use crate::web::{Scope, Tokens, add_token};
 
@@ -60,12 +61,12 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         }
         Action::Remove { name } => {
             Tokens::remove_from(file, name)?;
-            print(&format!("{name} may not read any more"))
+            print_line(&format!("{name} may not read any more"))
         }
         Action::List => {
             let tokens = Tokens::load_or_none(file)?;
             let lines: Vec<_> = tokens.names().map(|(name, scope)| format!("{scope:<5} {name}")).collect();
-            print(&lines.join("\n"))
+            print(&plain_lines(&lines))
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use halfrow::Verdict;
-use halfrow::words::plain;
+use halfrow::words::plain_lines;
 
 use super::Failure;
 use super::history::verdict;
@@ -39,9 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::call(NoSuchUnit { serial: arguments.serial.clone() }));
     }
     either(&units, arguments.json, |units| {
-        let lines = units.iter().flat_map(|unit| unit_lines(unit, &snapshot));
-        let lines: Vec<_> = lines.map(|line| plain(&line).into_owned()).collect();
-        lines.join("\n")
+        plain_lines(units.iter().flat_map(|unit| unit_lines(unit, &snapshot)))
     })
 }
 

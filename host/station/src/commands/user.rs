@@ -4,6 +4,7 @@ use std::io::{self, BufRead as _, IsTerminal as _, Stdin};
 use std::os::fd::AsRawFd as _;
 
 use clap::{Args, Subcommand};
+use halfrow::words::plain_lines;
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, poll};
 use nix::sys::signal::{SigSet, SigmaskHow, Signal};
@@ -11,7 +12,7 @@ use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::sys::termios::{self, LocalFlags, SetArg};
 
 use super::beginning::{SettingsFile, make_data};
-use super::{Failure, print};
+use super::{Failure, print, print_line};
 use crate::console;
 use crate::exit::Exit;
 use crate::web::{Role, Users, add_user};
@@ -61,16 +62,16 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let badge = asked("badge")?;
             let password = if *role == Role::Engineer { asked("password")? } else { String::new() };
             add_user(&settings, &access.users, (name.trim(), *role), &badge, &password)?;
-            print(&format!("{} may act as {role}", name.trim()))
+            print_line(&format!("{} may act as {role}", name.trim()))
         }
         Action::Remove { name } => {
             Users::remove_from(&access.users, name)?;
-            print(&format!("{name} may not act any more"))
+            print_line(&format!("{name} may not act any more"))
         }
         Action::List => {
             let users = Users::load_or_none(&access.users)?;
             let lines: Vec<_> = users.names().map(|(name, role)| format!("{role:<9} {name}")).collect();
-            print(&lines.join("\n"))
+            print(&plain_lines(&lines))
         }
     }
 }

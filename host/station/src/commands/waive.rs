@@ -1,7 +1,6 @@
 //! `halfrow-station waive`
 
 use clap::Args;
-use halfrow::words::plain;
 
 use super::Failure;
 use super::looking::Data;
@@ -29,7 +28,7 @@ pub(super) fn run(Arguments { run, data, why }: &Arguments) -> Result<Exit, Fail
     let mut store = at_station(&data.folder(), operator, &format!("waive {run}"))?;
     let waiver = store.waive(run, operator, reason)?;
     let said = format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason);
-    console::tell(&plain(&said));
+    console::tell_line(&said);
     Ok(Exit::Pass)
 }
 

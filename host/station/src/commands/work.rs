@@ -6,6 +6,7 @@ use std::thread::{self, ScopedJoinHandle};
 use clap::Args;
 use halfrow::Verdict;
 use halfrow::verdict::StoppedBy;
+use halfrow::words::plain;
 use rand::{RngExt as _, rng};
 use serde_json::json;
 
@@ -191,5 +192,9 @@ fn text(JobResult { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. 
         (true, _) if ended.verdict == Verdict::Error => "; the job is given back",
         (true, _) => "",
     };
-    format!("{} {}: {} (job {job}, board {}{note})", ended.verdict, run.serial, ended.headline, lease.board)
+    plain(&format!(
+        "{} {}: {} (job {job}, board {}{note})",
+        ended.verdict, run.serial, ended.headline, lease.board
+    ))
+    .into_owned()
 }

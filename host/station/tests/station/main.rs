@@ -26,3 +26,4 @@ mod service;
 mod settings;
 mod sinks;
 mod trial;
+mod usage;

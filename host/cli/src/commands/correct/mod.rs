@@ -197,12 +197,12 @@ impl Job<'_> {
         }
         let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
         for path in &places.frames {
-            console::tell(&format!("wrote {}, corrected by the {whom}, not judged", path.display()));
+            console::tell_line(&format!("wrote {}, corrected by the {whom}, not judged", path.display()));
         }
         for path in &places.previews {
-            console::tell(&format!("wrote {}, a preview", path.display()));
+            console::tell_line(&format!("wrote {}, a preview", path.display()));
         }
-        console::tell(&format!("tables: {tables}"));
+        console::tell_line(&format!("tables: {tables}"));
         Ok(Exit::Pass)
     }
 }

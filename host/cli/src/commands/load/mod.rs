@@ -29,6 +29,7 @@ use halfrow::link::{self, Class, kinds};
 use halfrow::result::BoardReport;
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy};
+use halfrow::words::plain_lines;
 
 pub(super) use error::LoadError;
 
@@ -242,5 +243,5 @@ fn text(loaded: &Loaded<'_>, board: Option<&BoardReport>) -> String {
     } else {
         lines.push(format!("{:<12} not asked; --board TARGET compares its build with the file's", "board"));
     }
-    lines.join("\n")
+    plain_lines(lines)
 }

@@ -11,6 +11,7 @@ use halfrow::link::{SerialBoard, bytes_per_second, kinds};
 use halfrow::result::Variation;
 use halfrow::run::{self, Build, Part, Plan, Prices, Rates, Selection, Timing, usual_capabilities};
 use halfrow::target::{BoardKind, Target};
+use halfrow::words::plain_lines;
 
 /// Links for which prices are given if the target does not say how fast its link is: two UARTs and a FIFO.
 const USUAL_LINKS: [(&str, f64); 3] =
@@ -81,7 +82,7 @@ pub(super) fn list(plan: &Plan, target: &Target, as_json: bool) -> Result<Exit, 
         lines.push(String::new());
         lines.extend(table(&links));
     }
-    print(&lines.join("\n"))?;
+    print(&plain_lines(&lines))?;
     Ok(Exit::Pass)
 }
 

@@ -1,0 +1,71 @@
+//! Names of files and boards in what is printed: whatever they hold, they command no terminal and begin no line.
+
+use halfrow_tests::program::{Ended, Folder, finish};
+
+use crate::small;
+
+/// It conceals what follows, begins a line as a verdict does, and reverses the text.
+const HOSTILE: &str = "\u{1b}[8mq\nPASS\u{202e}";
+/// The same in words.
+const SPELT: &str = "\\u{1b}[8mq\\nPASS\\u{202e}";
+
+/// Checks that `text` has the name in words alone.
+#[track_caller]
+fn assert_spelt(text: &str, what: &str) {
+    assert!(text.contains(SPELT), "{what}: {text:?}");
+    let is_unfit = |letter: char| letter.is_control() && letter != '\n' || letter == '\u{202e}';
+    assert!(!text.contains(is_unfit), "{what}: {text:?}");
+    assert!(!text.lines().any(|line| line.starts_with("PASS")), "{what}: {text:?}");
+}
+
+/// With colours, which a pipe gets by request: without them the program takes out what it takes for colours.
+fn coloured(folder: &Folder, call: &[&str]) -> Ended {
+    finish(folder.command(call.iter().copied()).env("CLICOLOR_FORCE", "1"))
+}
+
+#[test]
+fn a_name_that_was_written_is_told_in_words() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path().join("photos")).unwrap();
+    let size = ["--width", "128", "--height", "128"];
+    let preview = ["correct", "builtin:street", "--model", "-o", "a.pgm", "--preview", "photos/a.png"];
+    assert_eq!(folder.halfrow(preview.into_iter().chain(size)).code, Some(0));
+    let named = |ending: &str| format!("{HOSTILE}{ending}");
+    let [pgm, png, json, mem] = [".pgm", ".png", ".json", ".mem"].map(named);
+    let calls: Vec<Vec<&str>> = vec![
+        small("correct", &["builtin:black", "--model", "-o", &pgm]),
+        small("correct", &["builtin:black", "--model", "-o", "b.pgm", "--preview", &png]),
+        small("tables", &["-o", &json]),
+        small("tables", &["-o", &mem]),
+        small("lens", &["--map", &png]),
+        small("frames", &["--only", "black", "-o", HOSTILE]),
+        vec!["kernel", "train", "--images", "photos", "-o", &json],
+        vec!["paper", "fig8", "-o", HOSTILE],
+    ];
+    for call in calls {
+        let call = [&["--quiet"][..], &call, &["--overwrite"]].concat();
+        for ended in [folder.halfrow(call.iter().copied()), coloured(&folder, &call)] {
+            assert_eq!(ended.code, Some(0), "{call:?}: {}", ended.stderr);
+            assert_spelt(&ended.stdout, &format!("{call:?}"));
+        }
+    }
+}
+
+#[test]
+fn a_name_that_is_read_is_told_in_words() {
+    let folder = Folder::new();
+    let table = format!("{HOSTILE}.json");
+    assert_eq!(folder.halfrow(small("tables", &["-o", &table])).code, Some(0));
+    let frame = format!("{HOSTILE}.pgm");
+    assert_eq!(folder.halfrow(small("correct", &["builtin:black", "--model", "-o", &frame])).code, Some(0));
+    for call in [
+        &["correct", "builtin:black", "--model", "--overwrite", "-o", "out.pgm", "--tables", &table][..],
+        &["verify", "--list", "--tables", &table, "--frame", &frame],
+        &["boards", &format!("serial:/dev/{HOSTILE}")],
+    ] {
+        for ended in [folder.halfrow(call.iter().copied()), coloured(&folder, call)] {
+            assert_eq!(ended.code, Some(0), "{call:?}: {}", ended.stderr);
+            assert_spelt(&ended.stdout, &format!("{call:?}"));
+        }
+    }
+}
