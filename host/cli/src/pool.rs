@@ -40,7 +40,7 @@ pub(crate) enum PoolError {
     )]
     NoStation(#[source] io::Error),
     /// No board of this kind is available; the station's program has said why.
-    #[error("no board of the kind {kind} is available; see what {STATION} says above")]
+    #[error("no board of the kind {kind} is available; see what {STATION} wrote to stderr")]
     None {
         /// The kind.
         kind: String,

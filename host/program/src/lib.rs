@@ -23,6 +23,7 @@ pub mod man_pages;
 pub mod number;
 pub mod reference;
 pub mod signals;
+mod usage;
 mod variables;
 
 pub use halfrow::exit;

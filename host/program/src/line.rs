@@ -3,13 +3,12 @@
 use std::ffi::OsString;
 
 use clap::error::ErrorKind;
-use clap::{Arg, Command, Parser};
-use halfrow::result::Problem;
+use clap::{Arg, Command, CommandFactory, Parser};
 
 use crate::built::{self, Built};
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
-use crate::{codes, json, variables};
+use crate::{json, usage, variables};
 
 /// The command line in `arguments`, the first of which is the program's name. Every option with a value accepts `-1` as its
 /// value, so that the error says what the option takes and not that `-1` is no option. An empty environment variable counts as
@@ -29,14 +28,25 @@ pub fn read<Line: Parser>(arguments: impl IntoIterator<Item = OsString>) -> clap
                 .err()
                 .unwrap_or(told));
         }
-        Err(told) => {
-            return Err(variables::blamed(told, &command, |is_meant| {
-                let left = |it| variables::unless_empty(variables::unless(is_meant(&it), it));
-                matched(&mut with_each(Line::command(), &|it| with_negative_numbers(left(it)))).err()
-            }));
-        }
+        Err(told) => return Err(named::<Line>(told, &arguments, &command)),
     };
-    Line::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
+    Line::from_arg_matches_mut(&mut matches).map_err(|error| usage::spelt(error.format(&mut command)))
+}
+
+/// `told`, naming the variable or the argument that it is about.
+fn named<Line: CommandFactory>(told: clap::Error, arguments: &[OsString], command: &Command) -> clap::Error {
+    let read = |arguments: &[OsString], is_left_out: &dyn Fn(&Arg) -> bool| {
+        let left = |it: Arg| variables::unless_empty(variables::unless(is_left_out(&it), it));
+        let mut command = with_each(Line::command(), &|it| with_negative_numbers(left(it)));
+        command.try_get_matches_from_mut(arguments).err()
+    };
+    let no_text = || usage::no_text(arguments, command, |arguments| read(arguments, &|_| false));
+    if told.kind() == ErrorKind::InvalidUtf8
+        && let Some(of_argument) = no_text()
+    {
+        return of_argument;
+    }
+    usage::spelt(variables::blamed(told, command, |is_left_out| read(arguments, is_left_out)))
 }
 
 fn with_negative_numbers(argument: Arg) -> Arg {
@@ -55,7 +65,7 @@ fn with_each(command: Command, changed: &dyn Fn(Arg) -> Arg) -> Command {
 /// # Errors
 /// [`Unprinted`] when the call asks for help or version, and stdout does not take it.
 pub fn tell(told: &clap::Error, program: &Command, built: Built) -> Result<Exit, Unprinted> {
-    let mut text = told.render().ansi().to_string();
+    let mut text = usage::text(told);
     let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
     let options: Vec<_> = arguments.take_while(|argument| argument != "--").collect();
     if told.kind() == ErrorKind::DisplayVersion && built::is_asked(&options) {
@@ -74,12 +84,5 @@ pub fn tell(told: &clap::Error, program: &Command, built: Built) -> Result<Exit,
 fn document(told: &clap::Error, program: &Command, options: &[String]) -> String {
     let known = |name: &&String| program.find_subcommand(name).is_some();
     let command = options.iter().find(known).map_or(program.get_name(), String::as_str);
-    let message = told.render().to_string();
-    let message = message.trim_start_matches("error: ").split("\n\nUsage:").next().unwrap_or_default().trim();
-    let mut problem = Problem::new(codes::of_usage(told.kind()), message);
-    if told.kind() != ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        let name = program.get_name();
-        problem.remedy = Some(format!("See `{name} help` and `{name} COMMAND --help`."));
-    }
-    json::without_result(command, Exit::Usage, None, &problem)
+    json::without_result(command, Exit::Usage, None, &usage::problem(told, program))
 }

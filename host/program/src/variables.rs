@@ -50,7 +50,10 @@ fn no_text(command: &Command, read: impl Fn(&dyn Fn(&Arg) -> bool) -> Option<Err
         left_out.push(variable);
         let without = read(&|argument| argument.get_env().is_some_and(|of_this| left_out.contains(&of_this)));
         if without.is_none_or(|without| without.kind() != ErrorKind::InvalidUtf8) {
-            let told = format!("{} in the environment is no text in UTF-8\n", variable.display());
+            let told = format!(
+                "{} in the environment is no text in UTF-8; write it in UTF-8, or unset it\n",
+                variable.display()
+            );
             return Some(Error::raw(ErrorKind::InvalidUtf8, told).with_cmd(command));
         }
     }

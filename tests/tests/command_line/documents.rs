@@ -58,6 +58,33 @@ fn every_command_that_prints_a_result_prints_a_document() {
 }
 
 #[test]
+fn the_remedy_of_a_wrong_value_is_what_to_write_instead() {
+    let folder = Folder::new();
+    let help = "See `halfrow help` and `halfrow COMMAND --help`.";
+    for (call, message, remedy) in [
+        (
+            &["verify", "--width", "foo; bar"][..],
+            "invalid value 'foo; bar' for '--width <SAMPLES>': give a whole number of samples",
+            "Give a whole number of samples.",
+        ),
+        (
+            &["verify", "--phase", "moon"],
+            "invalid value 'moon' for '--phase <PHASE>': `moon` is no Bayer phase; use grbg, rggb, bggr or gbrg",
+            "Use grbg, rggb, bggr or gbrg.",
+        ),
+        (&["verify", "--moon"], "unexpected argument '--moon' found", help),
+        (
+            &["soak"],
+            "the following required arguments were not provided:\n  <--hours <HOURS>|--frames <N>>",
+            help,
+        ),
+    ] {
+        let error = &told(&folder, 2, call)["error"];
+        assert_eq!((&error["message"], &error["remedy"]), (&message.into(), &remedy.into()), "{call:?}");
+    }
+}
+
+#[test]
 fn what_is_wrong_with_a_call_has_a_code_and_the_same_shape() {
     let folder = Folder::new();
     let cases: [(&str, &str, &[&str]); 9] = [

@@ -1,8 +1,11 @@
 //! Names of files and boards in what is printed: whatever they hold, they command no terminal and begin no line.
 
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt as _;
+
 use halfrow_tests::program::{Ended, Folder, finish};
 
-use crate::small;
+use crate::{refused, small};
 
 /// It conceals what follows, begins a line as a verdict does, and reverses the text.
 const HOSTILE: &str = "\u{1b}[8mq\nPASS\u{202e}";
@@ -68,4 +71,54 @@ fn a_name_that_is_read_is_told_in_words() {
             assert_spelt(&ended.stdout, &format!("{call:?}"));
         }
     }
+}
+
+/// Twice: the value as it was given, and in the words of whoever reads it.
+#[test]
+fn an_argument_that_is_refused_is_told_in_words() {
+    let folder = Folder::new();
+    let value = format!("\r\u{7}\u{9b}31m{HOSTILE}");
+    let [unknown, command] = [format!("--{HOSTILE}"), format!("x{HOSTILE}")];
+    for call in [
+        &["verify", "--phase", &value][..],
+        &["verify", "--rows", &value],
+        &["verify", "--width", &value],
+        &["verify", &unknown],
+        &["serve", &command],
+        &[&command],
+    ] {
+        let ended = coloured(&folder, call);
+        assert_eq!(ended.code, Some(2), "{call:?}");
+        // Its own colours are all that is left.
+        let text = anstream::adapter::strip_str(&ended.stderr).to_string();
+        assert_spelt(&text, &format!("{call:?}"));
+        assert!(!ended.stderr.contains("\u{1b}[8m"), "{:?}", ended.stderr);
+    }
+    let ended = folder.halfrow(["verify", "--phase", &value, "--json"]);
+    let message = ended.json()["error"]["message"].to_string();
+    assert!(message.contains("PASS") && !message.contains("u001b"), "{message}");
+}
+
+/// As from a terminal that is not set to UTF-8.
+#[test]
+fn an_argument_that_must_be_text_is_named_with_what_to_do() {
+    let folder = Folder::new();
+    for (option, value, named) in [
+        (Some("--operator"), &b"M\xfcller"[..], "`M\u{fffd}ller` behind --operator"),
+        (None, b"--operator=M\xfcller", "`--operator=M\u{fffd}ller`"),
+    ] {
+        let mut call = folder.command(["verify", "--json", "--report", "out"]);
+        call.args(option).arg(OsStr::from_bytes(value));
+        let ended = finish(&mut call);
+        let error = &ended.json()["error"];
+        assert_eq!((ended.code, &error["code"]), (Some(2), &"usage-value-wrong".into()), "{ended:?}");
+        let message = error["message"].as_str().unwrap();
+        assert!(message.starts_with(&format!("the argument {named} is no text in UTF-8; ")), "{message}");
+        assert!(error["remedy"].as_str().unwrap().starts_with("Write it in UTF-8"), "{error}");
+    }
+    // The name of a file need not be text.
+    let mut call = folder.command(["verify", "--frame"]);
+    let ended = finish(call.arg(OsStr::from_bytes(b"M\xfcller.pgm")));
+    assert!(!ended.stderr.contains("UTF-8"), "{}", ended.stderr);
+    refused(&folder, &["verify", "--operator"], "a value is required for '--operator <NAME>'");
 }

@@ -113,7 +113,8 @@ fn a_variable_that_is_no_text_is_named_where_it_must_be_text() {
     let ended = finish(folder.command(small("verify", &["--json"])).envs(names.map(|name| (name, other))));
     let error = &ended.json()["error"];
     assert_eq!(
-        error["message"], "HALFROW_OPERATOR in the environment is no text in UTF-8",
+        error["message"],
+        "HALFROW_OPERATOR in the environment is no text in UTF-8; write it in UTF-8, or unset it",
         "{}",
         ended.stderr
     );

@@ -1,7 +1,21 @@
 //! What the program says of a call that it cannot use, and of names that it is given.
 
-use crate::common::{PLAN, did};
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt as _;
+use std::process::Command;
+
+use crate::common::{Did, PLAN, did, program};
 use crate::runs::bench::Station;
+
+/// As from a terminal that is not set to UTF-8.
+#[test]
+fn a_person_whose_name_is_no_text_is_told_which_option_has_it() {
+    let mut waive = Command::new(program());
+    waive.args(["waive", "--data", "x", "--reason", "y", "run", "--operator"]);
+    let refused = Did::from(waive.arg(OsStr::from_bytes(b"M\xfcller")).output().unwrap());
+    let said = "the argument `M\u{fffd}ller` behind --operator is no text in UTF-8; write it in UTF-8";
+    assert!(refused.code == Some(2) && refused.complained.contains(said), "{refused:?}");
+}
 
 /// It conceals what follows, and begins a line as a verdict does.
 #[test]
