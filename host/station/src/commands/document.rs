@@ -21,11 +21,19 @@ pub(super) fn text(
     json::document(&document).map_err(Failure::error)
 }
 
+/// The command that prints an object a line, to which that of its failure is one more.
+pub(super) const IN_LINES: &str = "work";
+
 /// The document of a command that failed. It has no verdict, because none was saved.
 #[must_use]
 pub fn failure(command: &str, failure: &Failure) -> String {
     let Failure { exit, error } = failure;
-    json::without_result(command, *exit, None, &codes::problem(*exit, error))
+    let indented = json::without_result(command, *exit, None, &codes::problem(*exit, error));
+    if command != IN_LINES {
+        return indented;
+    }
+    // No string of JSON has a newline of its own.
+    indented.lines().map(str::trim_start).collect()
 }
 
 /// The code of a command's failure, if `halfrow explain` has more to say about it.

@@ -39,6 +39,7 @@ mod yields;
 
 use clap::{ArgAction, Parser, Subcommand};
 
+use document::IN_LINES;
 pub use document::{code, failure};
 use halfrow::words::plain;
 
@@ -141,9 +142,11 @@ impl Cli {
             Command::Unit(arguments) => arguments.json.then_some("unit"),
             Command::Yield(arguments) => arguments.json.then_some("yield"),
             Command::Pareto(arguments) => arguments.json.then_some("pareto"),
-            // Their lists have no schema.
-            Command::Plan(_) | Command::Outbox(_) | Command::Work(_) | Command::Job(_) => None,
-            Command::Board(_) => None,
+            Command::Plan(arguments) => arguments.is_documented().then_some("plan"),
+            Command::Outbox(arguments) => arguments.is_documented().then_some("outbox"),
+            Command::Work(arguments) => arguments.json.then_some(IN_LINES),
+            Command::Job(arguments) => arguments.is_documented().then_some("job"),
+            Command::Board(arguments) => arguments.is_documented().then_some("board"),
             // They print no JSON.
             Command::Waive(_) | Command::Export(_) | Command::Evidence(_) | Command::Backup(_) => None,
             Command::Restore(_) | Command::Rebind(_) | Command::Lanes(_) | Command::LangCheck(_) => None,

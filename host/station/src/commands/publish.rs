@@ -59,7 +59,7 @@ pub(super) struct List {
     settings: SettingsFile,
     /// Print JSON
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 /// A plan that is not published.

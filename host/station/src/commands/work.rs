@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     disk: Disk,
     /// Print a JSON object for each job
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 /// The settings do not say which jobs the station takes.

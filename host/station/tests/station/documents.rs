@@ -101,6 +101,25 @@ fn what_has_no_verdict_is_a_document_with_a_code() {
     );
 }
 
+/// Whoever reads stdout gets a code even where the command's own lists have no schema.
+#[test]
+fn a_list_that_cannot_be_made_is_a_document_with_a_code() {
+    for call in
+        [&["plan", "published"][..], &["outbox", "list"], &["work"], &["job", "list"], &["board", "list"]]
+    {
+        let did = did(&[call, &["--json", "--settings", "/nowhere/station.toml"]].concat());
+        let said = document(&did);
+        assert_eq!(
+            (&said["error"]["code"], &said["command"], &said["exit_code"]),
+            (&"station-input-unreadable".into(), &call[0].into(), &2.into())
+        );
+        // Of `work` each line is an object.
+        assert_eq!(did.said.lines().count() == 1, call == ["work"], "{}", did.said);
+        let without = crate::common::did(&[call, &["--settings", "/nowhere/station.toml"]].concat());
+        assert_eq!((without.code, without.said.as_str()), (Some(2), ""), "{call:?}");
+    }
+}
+
 #[test]
 fn what_check_finds_has_codes() {
     let station = Station::with(PLAN);
