@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use halfrow::files::written_aside::{Aside, WriteAsideError, write_aside};
 use halfrow::words::{self, verb};
 
@@ -25,6 +25,7 @@ use crate::store::Snapshot;
 /// that are open are left out. So is a run whose record cannot be read: it is named, all others are written, and the exit code
 /// is 3.
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("runs").required(true).multiple(true).args(["run", "to"])))]
 pub(super) struct Arguments {
     /// The run, as `halfrow-station history` names it [default: all that pass the filters]
     #[arg(conflicts_with_all = Filtered::GROUPS)]
@@ -35,7 +36,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value = "record")]
     format: Format,
     /// The file, or the folder, which is made if it is not there
-    #[arg(long, value_name = "PATH", required_unless_present = "run")]
+    #[arg(long, value_name = "PATH")]
     to: Option<PathBuf>,
     #[command(flatten)]
     filtered: Filtered,

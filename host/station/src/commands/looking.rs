@@ -34,9 +34,10 @@ impl Data {
 
 /// Whose results are looked at.
 #[derive(Debug, Args)]
+#[group(required = true, multiple = true)]
 pub(super) struct Results {
     /// The station's folder
-    #[arg(long, value_name = "FOLDER", env = "HALFROW_STATION_DATA", required_unless_present = "plant")]
+    #[arg(long, value_name = "FOLDER", env = "HALFROW_STATION_DATA")]
     data: Option<PathBuf>,
     /// The results of all stations instead, from the plant of these settings
     #[arg(long, value_name = "SETTINGS")]

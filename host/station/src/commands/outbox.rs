@@ -1,6 +1,6 @@
 //! `halfrow-station outbox`
 
-use clap::{Args, Subcommand};
+use clap::{ArgGroup, Args, Subcommand};
 use halfrow::words::verb;
 use serde::Serialize;
 
@@ -41,12 +41,12 @@ enum Action {
         disk: Disk,
     },
     /// Have something tried again that waits for a person
+    #[command(group(ArgGroup::new("entries").required(true).args(["id", "sink"])))]
     Release {
         /// The id of the run, the waiver or the line of the audit
-        #[arg(required_unless_present = "sink")]
         id: Option<String>,
         /// All that waits for a person at this sink
-        #[arg(long, value_name = "NAME", conflicts_with = "id")]
+        #[arg(long, value_name = "NAME")]
         sink: Option<String>,
         #[command(flatten)]
         why: Why,

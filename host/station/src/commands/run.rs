@@ -29,12 +29,17 @@ use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::settings::{LANE_NAME, is_lane_name};
 use crate::store::{AgainError, Folder, InLane, SharedStore};
 
+/// clap's own says nothing of `--mock`, which stands for two options.
+const USAGE: &str =
+    "halfrow-station run [OPTIONS] --data <FOLDER> --plan <FILE> <--serial <SERIAL> --board <TARGET>|--mock>";
+
 /// Judge one board by a plan, and save the result
 ///
 /// The verdict is printed when it is on the disk and was read back. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR or a
 /// result that could not be saved, 4 busy, 5 nothing judged, 6 identity or version refused, 129, 130 or 143
 /// interrupted.
 #[derive(Debug, Args)]
+#[command(override_usage = USAGE)]
 pub(super) struct Arguments {
     /// The station's folder, which is made if it is not there
     #[arg(long, value_name = "FOLDER", env = "HALFROW_STATION_DATA")]

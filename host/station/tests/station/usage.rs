@@ -7,6 +7,33 @@ use std::process::Command;
 use crate::common::{Did, PLAN, did, program};
 use crate::runs::bench::Station;
 
+/// An option that another one makes needless is offered beside it.
+#[test]
+fn both_ways_are_in_the_usage_of_a_command_that_has_two() {
+    let results = "<--data <FOLDER>|--plant <SETTINGS>>";
+    for (call, ways) in [
+        (&["history"][..], results),
+        (&["unit", "S1"], results),
+        (&["yield"], results),
+        (&["pareto"], results),
+        (&["export", "--to", "x"], results),
+        (&["export", "--data", "x"], "<RUN|--to <PATH>>"),
+        (&["outbox", "release", "--reason", "x", "--operator", "y"], "<ID|--sink <NAME>>"),
+        (&["run", "--data", "x", "--plan", "y"], "<--serial <SERIAL> --board <TARGET>|--mock>"),
+    ] {
+        let refused = did(call);
+        assert_eq!(refused.code, Some(2), "{call:?}: {refused:?}");
+        assert!(refused.complained.contains(ways), "{call:?}: {}", refused.complained);
+    }
+    // A station's variable names a folder that the plant replaces.
+    let mut both = Command::new(program());
+    both.args(["history", "--plant", "/nowhere/station.toml"]).env("HALFROW_STATION_DATA", "/nowhere");
+    let both = Did::from(both.output().unwrap());
+    assert!(both.complained.contains("/nowhere/station.toml cannot be read"), "{both:?}");
+    let twice = did(&["outbox", "release", "id", "--sink", "x", "--reason", "x", "--operator", "y"]);
+    assert!(twice.complained.contains("cannot be used with"), "{twice:?}");
+}
+
 /// As from a terminal that is not set to UTF-8.
 #[test]
 fn a_person_whose_name_is_no_text_is_told_which_option_has_it() {
