@@ -25,3 +25,19 @@ fn the_station_beside_the_program_is_started_or_how_to_get_it_is_told() {
     let started = call();
     assert_eq!((started.code, started.stdout.as_str()), (Some(6), "run --lane 1 -v\n"), "{started:?}");
 }
+
+/// Whoever names another station's settings there would be shown this one's.
+#[test]
+fn what_stands_before_station_is_not_lost() {
+    let folder = Folder::new();
+    folder.write("s2.toml", "");
+    for ours in [&["--settings", "s2.toml"][..], &["-q"], &["-v"], &["--model-path", "scalar"], &["--json"]] {
+        for call in [[ours, &["station", "check"]].concat(), [&["station"], ours, &["check"]].concat()] {
+            let ended = folder.halfrow(call.iter().copied());
+            assert_eq!(ended.code, Some(2), "{call:?}: {ended:?}");
+            assert!(ended.stderr.contains("is taken for `halfrow` here"), "{call:?}: {}", ended.stderr);
+        }
+    }
+    let said = folder.halfrow(["--json", "station", "check"]).json();
+    assert_eq!(said["error"]["code"], "option-without-effect", "{said}");
+}
