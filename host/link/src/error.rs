@@ -11,8 +11,13 @@ use crate::{Class, RecordingError, SerialError, Target, TcpError, UsbError};
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The target begins with a kind of board that this program does not know.
-    #[error("`{0}` is not a known kind of board{like}; {remedy}", like = like(.0), remedy = instead_of(.0))]
-    UnknownKind(String),
+    #[error("`{kind}` is not a known kind of board{like}; {remedy}", like = like(.kind), remedy = instead_of(.kind, .known))]
+    UnknownKind {
+        /// The kind.
+        kind: String,
+        /// How the targets that the caller takes are written, with commas between.
+        known: String,
+    },
     /// The target has an address, but boards of this kind have none.
     #[error(
         "`{kind}` takes no address, but got `{address}`; write `{kind}` alone, with options after a comma"
@@ -145,7 +150,7 @@ impl OpenError {
             Self::Tcp(error) => error.class(),
             Self::Usb(error) => error.class(),
             Self::System { .. } => Class::Station,
-            Self::UnknownKind(_)
+            Self::UnknownKind { .. }
             | Self::NoAddress { .. }
             | Self::AddressMissing { .. }
             | Self::Option { .. }
@@ -162,7 +167,7 @@ impl OpenError {
 }
 
 /// What to write instead of an unknown kind. A device's path ends up as the kind when no kind stands before it.
-fn instead_of(kind: &str) -> String {
+fn instead_of(kind: &str, known: &str) -> String {
     if kind.starts_with("/dev/") {
         return format!("for a serial port write serial:{kind}");
     }
@@ -172,7 +177,7 @@ fn instead_of(kind: &str) -> String {
     if kind == "pool" {
         return "a board of a pool cannot be named here, so name the board itself".to_owned();
     }
-    format!("choose from {}", kinds::forms().join(", "))
+    format!("choose from {known}")
 }
 
 /// The known kind that an unknown one is like, as [`meant`] tells it.

@@ -24,7 +24,8 @@ pub fn check(target: &Target) -> Result<(), OpenError> {
 }
 
 fn kind(target: &Target) -> Result<&'static Kind, OpenError> {
-    kinds::of(target).ok_or_else(|| OpenError::UnknownKind(target.kind.clone()))
+    let unknown = || OpenError::UnknownKind { kind: target.kind.clone(), known: kinds::forms().join(", ") };
+    kinds::of(target).ok_or_else(unknown)
 }
 
 /// Opens the link that `target` names, without sending anything over it.

@@ -49,6 +49,18 @@ fn an_unknown_kind_is_refused() {
     );
     no_such_board("ttyUSB0", "for a serial port write serial:/dev/ttyUSB0");
     no_such_board("mokc", "(did you mean mock?); choose from mock, sim");
+    // A recording is judged again by `verify` alone, and a pool's board is borrowed by whoever asks a board something.
+    let folder = Folder::new();
+    for (call, ending) in [
+        (&["verify", "--board", "moon"][..], "tcp:HOST:PORT, replay:FILE, or pool:KIND\n"),
+        (&["info", "--board", "moon"], "tcp:HOST:PORT, or pool:KIND\n"),
+        (&["soak", "--frames", "1", "--board", "moon"], "tcp:HOST:PORT, or pool:KIND\n"),
+        (&["correct", "builtin:black", "-o", "x.pgm", "--board", "moon"], "tcp:HOST:PORT, or pool:KIND\n"),
+        (&["boards", "moon"], "tcp:HOST:PORT\n"),
+        (&["serve", "--board", "moon"], "tcp:HOST:PORT\n"),
+    ] {
+        refused(&folder, call, ending);
+    }
     no_such_board("Mock", "(did you mean mock?); choose from mock, sim");
     no_such_board("", "names no board");
     no_such_board("mock:7", "`mock` takes no address");

@@ -50,12 +50,20 @@ pub(crate) enum Replays {
     No,
 }
 
+/// The targets that a command takes by itself, as they are written.
+pub(crate) fn own_forms(replays: Replays) -> String {
+    let takes = |kind: &&kinds::Kind| replays == Replays::Yes || kind.board != BoardKind::Replay;
+    kinds::KINDS.iter().filter(takes).flat_map(kinds::Kind::targets).collect::<Vec<_>>().join(", ")
+}
+
+/// The same of a command that also takes boards of a pool.
+pub(crate) fn forms(replays: Replays) -> String {
+    format!("{}, or pool:KIND", own_forms(replays))
+}
+
 /// The help of `--board`. `without` is its end: what the command does if no board is named.
 fn help(replays: Replays, without: &str) -> String {
-    let takes = |kind: &&kinds::Kind| replays == Replays::Yes || kind.board != BoardKind::Replay;
-    let forms: Vec<_> = kinds::KINDS.iter().filter(takes).flat_map(kinds::Kind::targets).collect();
-    let forms = forms.join(", ");
-    format!("The board: {forms}, or pool:KIND, which a plant shares; see `halfrow boards`{without}")
+    format!("The board: {}, which a plant shares; see `halfrow boards`{without}", forms(replays))
 }
 
 /// `argument`, with that help if it is `--board`. For use on every argument: clap moves one that is changed by itself to the end.

@@ -27,6 +27,7 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
 
+use crate::arguments::board::{self, Replays};
 use crate::arguments::given;
 use crate::call_error::CallError;
 use crate::console;
@@ -36,6 +37,7 @@ use crate::progress::{self, ChildOutput};
 use crate::settings::Settings;
 use halfrow::board::BoardError;
 use halfrow::call::Files;
+use halfrow::link::OpenError;
 use halfrow::progress::Progress;
 use halfrow::reference;
 
@@ -130,7 +132,11 @@ impl Cli {
             return Err(Failure::call(CallError::NoJson { command }));
         }
         self.carried_out(&context).map_err(|failure| {
-            self.placed(self.unjudged(failure), context.settings_file.as_deref(), &context.settings.keys())
+            self.placed(
+                self.unjudged(self.of_known_kind(failure)),
+                context.settings_file.as_deref(),
+                &context.settings.keys(),
+            )
         })
     }
 
@@ -143,6 +149,18 @@ impl Cli {
             }
             None => failure,
         }
+    }
+
+    /// `failure`, which offers the kinds of boards that the command takes if it is about a kind that there is not.
+    fn of_known_kind(&self, mut failure: Failure) -> Failure {
+        if let Some(OpenError::UnknownKind { known, .. }) = failure.error.downcast_mut() {
+            *known = match self.0.command {
+                Command::Verify(_) => board::forms(Replays::Yes),
+                Command::Boards(_) | Command::Load(_) | Command::Serve(_) => board::own_forms(Replays::No),
+                _ => board::forms(Replays::No),
+            };
+        }
+        failure
     }
 
     /// `failure`, without a word about judging if the command judges nothing.

@@ -58,7 +58,7 @@ codes! {
         = Trace,
     }
     OpenError {
-        UnknownKind (kind) => "target-kind-unknown",
+        UnknownKind [kind] => "target-kind-unknown",
         NoAddress [kind, address] => "target-takes-no-address",
         AddressMissing [kind, form] => "target-address-missing",
         Option [kind, option, known] => "target-option-unknown",
