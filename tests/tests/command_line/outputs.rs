@@ -71,6 +71,8 @@ fn a_hyphen_is_no_folder() {
     hyphen(&small("verify", &["--report", "-"]), "--report");
     hyphen(&small("verify", &["--record", "-"]), "--record");
     hyphen(&["paper", "fig8", "-o", "-"], "--output");
+    hyphen(&small("tables", &["-o", "-"]), "--output");
+    hyphen(&small("lens", &["--map", "-"]), "--map");
     hyphen(&["manual", "-"], "FOLDER");
 }
 

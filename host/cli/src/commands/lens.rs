@@ -13,6 +13,7 @@ use crate::arguments::optics::LensArguments;
 use crate::console;
 use crate::document::{print_result, tell_result};
 use crate::exit::Exit;
+use halfrow::call::refuse_stdout;
 use halfrow::frames::{self, HeatMap};
 use halfrow::lenses::LensContentError;
 use halfrow::optics::{Optics, OpticsError, TablesBy};
@@ -36,7 +37,10 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     arguments.given.refuse_void(Decider::ShownLens, &[]).map_err(Failure::call)?;
-    arguments.map.as_deref().map_or(Ok(()), frames::check_png).map_err(Failure::call)?;
+    if let Some(map) = &arguments.map {
+        refuse_stdout("--map", map).map_err(Failure::call)?;
+        frames::check_png(map).map_err(Failure::call)?;
+    }
     prepare_files(
         &context.files(arguments.overwrite).reads(arguments.lens.file()).writes("--map", &arguments.map),
     )

@@ -13,6 +13,7 @@ use crate::arguments::optics::{self, LensArguments};
 use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
+use halfrow::call::refuse_stdout;
 use halfrow::optics::outside_circle;
 use halfrow::tables::{TableFile, TableFormat};
 use halfrow::words::count;
@@ -36,6 +37,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     arguments.given.refuse_void(Decider::MadeTables, &[]).map_err(Failure::call)?;
+    refuse_stdout("--output", &arguments.output).map_err(Failure::call)?;
     let format = TableFormat::of(&arguments.output).map_err(Failure::call)?;
     let of_settings = context.settings.kernel.as_deref().map(OsStr::new);
     let kernel = arguments.kernel.as_deref().or(of_settings);

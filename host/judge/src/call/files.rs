@@ -261,13 +261,19 @@ impl Files {
     }
 }
 
+/// Refuses an output that `option` names `-`. For callers that look at its ending before they list it in [`Files`].
+///
+/// # Errors
+/// [`FilesError::ToStdout`]
+pub fn refuse_stdout(option: &'static str, path: &Path) -> Result<(), FilesError> {
+    if path == Path::new("-") { Err(FilesError::ToStdout { option }) } else { Ok(()) }
+}
+
 impl Output {
     fn check(&self, overwrite: bool) -> Result<(), FilesError> {
         let (path, option) = (self.path.clone(), self.option);
         let named = if self.shape == Shape::InFolder { folder_of(&self.path) } else { &self.path };
-        if named == Path::new("-") {
-            return Err(FilesError::ToStdout { option });
-        }
+        refuse_stdout(option, named)?;
         match self.shape {
             Shape::Report => Ok(report::check_folder(&self.path, overwrite)?),
             Shape::File => Ok(written_aside::check(&self.path, overwrite)?),

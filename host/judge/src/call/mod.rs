@@ -8,7 +8,7 @@ mod input;
 mod options;
 mod size;
 
-pub use files::{Files, FilesError};
+pub use files::{Files, FilesError, refuse_stdout};
 pub use input::Input;
 pub use options::{
     BESIDE_RECORDING, FRAMES, MOST_SECONDS, NoTime, REPEATS, VoidOption, Voided, WHILE_RECORDED, WITHIN,
