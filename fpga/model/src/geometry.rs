@@ -26,13 +26,13 @@ pub struct Geometry {
 pub enum GeometryError {
     /// A width that is odd or outside [`MIN_WIDTH`] to [`MAX_WIDTH`].
     #[error(
-        "a width of {0} columns is not an even number from {min} to {max}; crop or pad the frame",
+        "a width of {0} columns is not an even number from {min} to {max}; give such a width, or crop or pad the frame",
         min = MIN_WIDTH,
         max = MAX_WIDTH
     )]
     Width(usize),
     /// A height outside 1 to [`MAX_HEIGHT`].
-    #[error("a height of {0} rows is outside 1 to {max}; crop the frame", max = MAX_HEIGHT)]
+    #[error("a height of {0} rows is outside 1 to {max}; give a height within, or crop the frame", max = MAX_HEIGHT)]
     Height(usize),
     /// An optical centre outside the frame.
     #[error(

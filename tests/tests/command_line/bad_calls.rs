@@ -24,7 +24,11 @@ fn a_frame_that_no_datapath_takes_is_refused() {
         refused(&folder, &call(["--width", "0"]), "a width of 0 columns");
         refused(&folder, &call(["--width", "62"]), "a width of 62 columns");
         refused(&folder, &call(["--width", "2594"]), "a width of 2594 columns");
-        refused(&folder, &call(["--height", "0"]), "a height of 0 rows is outside 1 to 2048");
+        refused(
+            &folder,
+            &call(["--height", "0"]),
+            "a height of 0 rows is outside 1 to 2048; give a height within",
+        );
         refused(&folder, &call(["--height", "2049"]), "a height of 2049 rows");
         refused(&folder, &call(["--centre-x", "-1"]), "the optical centre is at column -1");
         refused(&folder, &call(["--centre-x", "1920"]), "the optical centre is at column 1920");

@@ -28,10 +28,11 @@ use halfrow::verdict::StoppedBy;
 pub(crate) struct BoardArguments {
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = help(Replays::No, MOCK), value_parser = target())]
     board: Option<Target>,
-    /// Stop after this many seconds by this computer's clock or the link's, whichever comes first
+    /// Stop after this many seconds, at most 1e9, by this computer's clock or the link's, whichever comes first
+    /// [default: no limit]
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT", value_parser = any::<f64>("a number of seconds"))]
     timeout: Option<f64>,
-    /// Packets that may be sent again: 16, plus this percentage of all that are sent
+    /// Packets that may be sent again: 16, plus this percentage, 0 to 100, of all that are sent
     /// [default: 5; `link` has none]
     #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = number("percent", 0.0..=100.0))]
     retry_limit: Option<f64>,

@@ -41,7 +41,7 @@ pub(crate) struct RunArguments {
     /// Who tests, for the report
     #[arg(long, value_name = "NAME", env = "HALFROW_OPERATOR")]
     operator: Option<String>,
-    /// Go on when the board goes away and comes back within this many seconds [without a number: 30, and 300 in a soak]
+    /// Go on when the board goes away and comes back within this many seconds, at most 1e9 [without a number: 30, and 300 in a soak]
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, require_equals = true)]
     #[arg(env = "HALFROW_RECONNECT", value_parser = any::<f64>("a number of seconds"))]
     reconnect: Option<Option<f64>>,
@@ -53,7 +53,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
     #[arg(env = "HALFROW_REQUIRE_HARDWARE", value_parser = yes_or_no)]
     require_hardware: Option<bool>,
-    /// Seed of built-in frames, gaps, link test and the frames that the board makes
+    /// Seed of built-in frames, gaps, link test and the frames that the board makes [default: 1]
     #[arg(long, value_name = "SEED", env = "HALFROW_SEED", value_parser = whole_number())]
     seed: Option<u64>,
     #[command(flatten)]

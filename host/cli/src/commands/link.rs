@@ -19,7 +19,7 @@ use halfrow::words::{count, grouped, plain, verb};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// How long each of the five parts takes
+    /// How long each of the five parts takes, 0.001 to 86400 seconds
     #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds(0.001..=86_400.0))]
     seconds: Duration,
     /// Seed of what is sent

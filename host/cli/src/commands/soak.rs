@@ -31,7 +31,7 @@ pub(super) struct Arguments {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Length {
-    /// How long, in hours of the link's clock
+    /// How long, in hours of the link's clock, 0.0001 to 8760
     #[arg(long, value_name = "HOURS", value_parser = number("hours", 0.0001..=8760.0))]
     hours: Option<f64>,
     /// How many frames

@@ -17,7 +17,7 @@ use crate::web::{User, Who};
 /// Boards come by themselves; the last lane is yours. Everything lies in a folder of its own, and nothing leaves this computer.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// How many lanes
+    /// How many lanes, 1 to 16
     #[arg(long, default_value_t = 4, value_parser = lanes)]
     lanes: usize,
     /// The port of the pages; with 0 the system chooses one

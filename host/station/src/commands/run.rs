@@ -65,10 +65,10 @@ pub(super) struct Arguments {
     /// The station's name [default: this computer's]
     #[arg(long, value_name = "NAME", env = "HALFROW_STATION", value_parser = why::name)]
     station: Option<String>,
-    /// Kill the lane when it sends nothing for this long
+    /// Kill the lane when it sends nothing for this long, 0.1 to 86400 seconds
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds(0.1..=86_400.0))]
     silence: Duration,
-    /// How much memory the lane may have, in MiB of addresses
+    /// How much memory the lane may have, in MiB of addresses, 64 to 1048576
     #[arg(long, value_name = "MIB", default_value_t = MEMORY_MIB, value_parser = memory)]
     memory: u64,
     /// Test the board again although it passed already; for plans with `again = "ask"`

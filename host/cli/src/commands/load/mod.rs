@@ -46,7 +46,7 @@ pub(super) struct Arguments {
     /// The loaded board behind its link: it is greeted, and must be of the file's build
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", value_parser = crate::arguments::board::target())]
     board: Option<Target>,
-    /// The longest that loading may take, and the board until it answers
+    /// The longest that loading may take, and the board until it answers, 0.1 to 86400 seconds
     #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = seconds(0.1..=86_400.0))]
     deadline: Duration,
     /// What else openFPGALoader is called with, as `-- --ftdi-serial NUMBER` of one board among several

@@ -32,14 +32,14 @@ pub(super) struct Arguments {
     /// given several times
     #[arg(long, value_name = "FILE", env = "HALFROW_FRAME")]
     frame: Vec<OsString>,
-    /// How often to stream the frames
+    /// How often to stream the frames, 1 to 1000
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = repeats())]
     repeat: u32,
-    /// Let the board make frames at its full pixel clock for this many seconds of that clock, 0 for none
+    /// Let the board make frames at its full pixel clock for this many seconds of that clock, at most 1e9, 0 for none
     /// [default: 3 on hardware, three frames on any other board]
     #[arg(long, value_name = "SECONDS", env = "HALFROW_AT_SPEED", value_parser = any::<f64>("a number of seconds"))]
     at_speed: Option<f64>,
-    /// Judge within this many seconds, by the parts of the run that find the most faults per second
+    /// Judge within this many seconds, at most 1,000,000, by the parts of the run that find the most faults per second
     #[arg(long, value_name = "SECONDS", value_parser = within, conflicts_with_all = ["record", "list"])]
     within: Option<f64>,
     /// Stop at the first wrong frame
