@@ -125,6 +125,60 @@ fn every_completion_script_knows_every_command() {
     }
 }
 
+/// Beside those whose words the help lists by itself.
+#[test]
+fn a_shell_completes_the_words_that_an_option_takes() {
+    let bash = halfrow(["completions", "bash"]).stdout;
+    for (option, words) in [
+        ("phase", "grbg rggb bggr gbrg"),
+        ("bits", "8 10 12"),
+        ("raw", "u8 u16le mipi10 mipi12"),
+        ("format", "pgm png tif dng raw"),
+        ("only", "black white grey"),
+        ("model-path", "reference scalar avx2 avx512"),
+    ] {
+        let case = format!("--{option})\n");
+        let mut offered = bash.split(&case).skip(1);
+        let is_offered =
+            |after: &str| after.trim_start().starts_with(&format!("COMPREPLY=($(compgen -W \"{words}"));
+        assert!(bash.contains(&case), "{option}");
+        assert!(offered.all(is_offered), "{option}");
+    }
+    let help = halfrow(["verify", "--help"]).stdout;
+    assert!(!help.contains("[possible values: grbg"), "the sentence has them: {help}");
+}
+
+/// What the help says is what the option takes: the ends themselves, and nothing beyond.
+#[test]
+fn the_range_of_a_number_is_in_the_help_and_is_the_one_that_holds() {
+    for (call, option, range, beyond) in [
+        (&["verify"][..], "repeat", "1 to 1000", ["0", "1001"]),
+        (&["soak"], "hours", "0.0001 to 8760", ["0.00009", "8761"]),
+        (&["link"], "seconds", "0.001 to 86400", ["0.0009", "86401"]),
+        (&["load", "a.bit"], "deadline", "0.1 to 86400", ["0.09", "86401"]),
+        (&["verify"], "retry-limit", "0 to 100", ["-1", "101"]),
+        (&["verify"], "within", "at most 1,000,000", ["0", "1000001"]),
+        (&["verify"], "timeout", "at most 1e9", ["0", "1.1e9"]),
+        (&["verify"], "at-speed", "at most 1e9", ["-1", "1.1e9"]),
+    ] {
+        let help = halfrow(call.iter().copied().chain(["--help"])).stdout;
+        let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        let told = help.split(&format!(" --{option} <")).nth(1).unwrap();
+        let told = told.split(" --").next().unwrap();
+        assert!(told.contains(range), "{option}: {told}");
+        for value in beyond {
+            let ended = halfrow(call.iter().copied().chain([format!("--{option}={value}").as_str()]));
+            assert_eq!(ended.code, Some(2), "{option} {value}: {ended:?}");
+            assert!(ended.stderr.contains("give "), "{option} {value}: {}", ended.stderr);
+        }
+    }
+    for (option, default) in [("seed", "[default: 1]"), ("timeout", "[default: no limit]")] {
+        let help = halfrow(["soak", "--help"]).stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        let told = help.split(&format!(" --{option} <")).nth(1).unwrap();
+        assert!(told.split(" --").next().unwrap().contains(default), "{option}: {told}");
+    }
+}
+
 #[test]
 fn bash_reads_its_completion_script() {
     let script = halfrow(["completions", "bash"]).stdout;

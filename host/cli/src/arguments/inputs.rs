@@ -3,6 +3,7 @@
 use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::str::FromStr as _;
 use std::sync::Arc;
 
 use super::given::{Decider, Given, yes_or_no};
@@ -12,6 +13,7 @@ use crate::failure::Failure;
 use crate::settings::Settings;
 use clap::Args;
 use halfrow_model::{Geometry, Phase};
+use halfrow_program::choice::one_of;
 
 use halfrow::call::{Input, check_size};
 use halfrow::frames::{
@@ -24,7 +26,8 @@ use halfrow::run::FrameSource;
 #[command(next_help_heading = "Frame files")]
 pub(crate) struct InputArguments {
     /// Layout of headerless frame files: u8, u16le, mipi10 or mipi12; their size is the tables'
-    #[arg(long, value_name = "LAYOUT")]
+    #[arg(long, value_name = "LAYOUT", hide_possible_values = true)]
+    #[arg(value_parser = one_of(RawLayout::ALL.map(RawLayout::name), RawLayout::from_str))]
     raw: Option<RawLayout>,
     /// Crop pictures in colour about their centre, and scale them, to the tables' size
     #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]

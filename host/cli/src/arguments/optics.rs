@@ -2,10 +2,12 @@
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+use std::str::FromStr as _;
 
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
 use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, LensError, Phase};
+use halfrow_program::choice::one_of;
 use halfrow_program::number::any;
 
 use crate::call_error::CallError;
@@ -32,10 +34,12 @@ pub(crate) struct LensArguments {
     #[arg(value_parser = any::<usize>("a whole number of rows"))]
     height: Option<usize>,
     /// Bits a sample: 8, 10 or 12
-    #[arg(long, default_value = "12", value_parser = depth)]
+    #[arg(long, default_value = "12", hide_possible_values = true)]
+    #[arg(value_parser = one_of(["8", "10", "12"], depth))]
     bits: BitDepth,
     /// Bayer phase: grbg, rggb, bggr or gbrg
-    #[arg(long, default_value_t = Phase::Grbg)]
+    #[arg(long, default_value_t = Phase::Grbg, hide_possible_values = true)]
+    #[arg(value_parser = one_of(Phase::ALL.map(Phase::name), Phase::from_str))]
     pub(crate) phase: Phase,
     /// The lens: a file of OpenCV's fisheye model (FileStorage, camera_info, camchain) or of OCamCalib, or equidistant:RADIUS
     #[arg(long, value_name = "FILE|equidistant:RADIUS")]

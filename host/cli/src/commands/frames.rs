@@ -1,8 +1,10 @@
 //! `halfrow frames`
 
 use std::path::PathBuf;
+use std::str::FromStr as _;
 
 use clap::Args;
+use halfrow_program::choice::one_of;
 use halfrow_program::files::prepare_files;
 use halfrow_program::number::whole_number;
 use serde_json::json;
@@ -22,7 +24,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,
     /// Only the frame with this name; may be given several times
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", hide_possible_values = true)]
+    #[arg(value_parser = one_of(Builtin::ALL.map(Builtin::name), Builtin::from_str))]
     only: Vec<Builtin>,
     /// Seed of the frames noise, extremes and street
     #[arg(long, default_value_t = 1, value_parser = whole_number())]

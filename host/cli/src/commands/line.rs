@@ -2,9 +2,11 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::str::FromStr as _;
 
 use clap::{ArgAction, Parser, Subcommand};
 use halfrow_model::ModelPath;
+use halfrow_program::choice::one_of;
 use halfrow_program::line;
 
 use crate::arguments::given::Given;
@@ -35,7 +37,8 @@ pub(super) struct Line<Commands: Subcommand> {
     #[arg(long, global = true, value_name = "FILE", env = "HALFROW_SETTINGS")]
     pub(super) settings: Option<PathBuf>,
     /// How the model computes, always to the same bits: reference, scalar, avx2 or avx512 [default: the fastest here]
-    #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH")]
+    #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH", hide_possible_values = true)]
+    #[arg(value_parser = one_of(ModelPath::ALL.map(ModelPath::name), ModelPath::from_str))]
     pub(super) model_path: Option<ModelPath>,
     /// Print the result, or why there is none, as JSON; `halfrow schema` prints its schema
     #[arg(long, global = true)]

@@ -6,10 +6,12 @@ mod places;
 
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
+use std::str::FromStr as _;
 use std::sync::OnceLock;
 
 use clap::Args;
 use halfrow_model::Frame;
+use halfrow_program::choice::one_of;
 use halfrow_program::files::prepare_files;
 use serde_json::{Value, json};
 
@@ -50,7 +52,8 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
     /// Format of the files in a folder: pgm, png, tif, dng or raw [default: pgm]
-    #[arg(long, value_name = "FORMAT")]
+    #[arg(long, value_name = "FORMAT", hide_possible_values = true)]
+    #[arg(value_parser = one_of(Format::ALL.map(Format::extension), Format::from_str))]
     format: Option<Format>,
     /// Where to put a picture to look at: a .png file, or a folder for several frames
     ///
