@@ -4,11 +4,13 @@ use std::cmp::Reverse;
 use std::fmt::Write as _;
 
 use clap::Args;
-use halfrow::words::count;
+use halfrow::words::{count, plain};
 
 use super::Failure;
 use super::looking::{Counted, Results, either, table, time};
 use crate::exit::Exit;
+use crate::history::control::Limits;
+use crate::history::rate::per_cent;
 use crate::history::yields::{By, Flip, Yield, Yields, yields};
 
 /// How many of the units that failed first are listed.
@@ -39,8 +41,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn text(Yields { lines, flips }: &Yields) -> String {
-    let header = ["units of", "judged", "first pass", "in the end", "waived", "runs", "errors", "crashes"];
-    let mut text = table(&header, &[1, 4, 5, 7], lines.iter().map(row));
+    let has_band = lines.iter().any(|line| line.limits.is_some());
+    let band = has_band.then_some("band");
+    let header = ["units of", "judged", "first pass"].into_iter().chain(band);
+    let header: Vec<_> = header.chain(["in the end", "waived", "runs", "errors", "crashes"]).collect();
+    let numbers = [1, 4, 5, 7].map(|column| column + usize::from(has_band && column > 2));
+    let mut text = table(&header, &numbers, lines.iter().map(|line| row(line, has_band)));
+    text.push_str(&beyond(lines));
     if !flips.is_empty() {
         let newest = newest(flips);
         text.push_str("\n\nfirst FAIL, in the end PASS\n");
@@ -64,22 +71,45 @@ fn newest(flips: &[Flip]) -> Vec<&Flip> {
     newest
 }
 
-fn row(line: &Yield) -> Vec<String> {
-    let Yield { plan, first_pass, last, errors, .. } = line;
+/// The days or weeks that are beyond the band of their plan.
+fn beyond(lines: &[Yield]) -> String {
+    let is_beyond = |line: &&Yield| line.limits.is_some_and(|limits| limits.is_beyond);
+    let beyond: Vec<_> = lines.iter().filter(is_beyond).map(name).collect();
+    if beyond.is_empty() {
+        String::new()
+    } else {
+        format!("\n\nbeyond the band: {}", plain(&beyond.join(", ")))
+    }
+}
+
+/// What a line is about.
+fn name(line: &Yield) -> String {
     let lane = line.lane.iter().map(|lane| format!("lane {lane}"));
     let place = line.station.iter().cloned().chain(lane);
-    let names = [plan.product.clone(), plan.plan.clone()].into_iter();
+    let names = [line.plan.product.clone(), line.plan.plan.clone()].into_iter();
     let day = line.day.iter().chain(&line.week).map(ToString::to_string);
-    vec![
-        names.chain(day).chain(place).collect::<Vec<_>>().join(" "),
-        first_pass.of.to_string(),
-        first_pass.text(),
-        last.text(),
+    names.chain(day).chain(place).collect::<Vec<_>>().join(" ")
+}
+
+/// The range of the first pass if nothing has changed, and whether it is beyond that.
+fn band(limits: Option<Limits>) -> String {
+    let Some(Limits { limits: ends, is_beyond, .. }) = limits else { return "–".to_owned() };
+    let [low, high] = ends.map(per_cent);
+    format!("{low}–{high} %{}", if is_beyond { ", beyond" } else { "" })
+}
+
+fn row(line: &Yield, has_band: bool) -> Vec<String> {
+    let Yield { first_pass, last, errors, .. } = line;
+    let mut row = vec![name(line), first_pass.of.to_string(), first_pass.counted()];
+    row.extend(has_band.then(|| band(line.limits)));
+    row.extend([
+        last.counted(),
         line.waived.to_string(),
         errors.of.to_string(),
-        errors.text(),
+        errors.counted(),
         line.crashes.to_string(),
-    ]
+    ]);
+    row
 }
 
 fn flip(flip: &Flip) -> Vec<String> {

@@ -4,6 +4,8 @@ use serde::Serialize;
 
 /// The 97.5 % point of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
+/// More digits of a percentage than a share differs from 0 or 1 in.
+const DIGITS: usize = 17;
 
 /// How many of a total.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -27,12 +29,31 @@ impl Rate {
         Self { count, of, share, interval: is_any.then(|| wilson(count, of)) }
     }
 
+    /// The share and the ends of its interval in per cent, for people; `None` if the total is 0.
+    pub(crate) fn per_cent(&self) -> Option<[String; 3]> {
+        let (share, [low, high]) = self.share.zip(self.interval)?;
+        Some([share, low, high].map(per_cent))
+    }
+
     /// The share in per cent with its interval, for people.
     #[must_use]
     pub fn text(&self) -> String {
-        let Some((share, [low, high])) = self.share.zip(self.interval) else { return "–".to_owned() };
-        format!("{:.1} % ({:.1}–{:.1})", 100.0 * share, 100.0 * low, 100.0 * high)
+        let Some([share, low, high]) = self.per_cent() else { return "–".to_owned() };
+        format!("{share} % ({low}–{high})")
     }
+
+    /// The same, and the two counts.
+    pub(crate) fn counted(&self) -> String {
+        format!("{} {}/{}", self.text(), self.count, self.of)
+    }
+}
+
+/// A share from 0 to 1 in per cent: to a tenth, and with as many more digits as it takes for only all to be 100 and only none to be 0.
+pub(crate) fn per_cent(share: f64) -> String {
+    let is_between = 0.0 < share && share < 1.0;
+    let rounded = |digits: usize| format!("{:.digits$}", 100.0 * share);
+    let is_told = |text: &String| text.parse().is_ok_and(|told: f64| 0.0 < told && told < 100.0);
+    (1..DIGITS).map(rounded).find(|text| !is_between || is_told(text)).unwrap_or_else(|| rounded(DIGITS))
 }
 
 /// The ends of Wilson's score interval at 95 %: E. B. Wilson, J. Amer. Statist. Assoc. 22 (1927), p. 209. `of` is not 0.

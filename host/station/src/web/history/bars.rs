@@ -55,11 +55,12 @@ pub(super) struct Day {
 pub(super) fn days(visit: &Visit, of: &str, days: &[Day]) -> Markup {
     let low = |day: &Day| day.rate.interval.map(|[low, _]| low);
     let limit = |day: &Day| day.limits.map(|Limits { limits: [low, _], .. }| low);
+    let shares = days.iter().filter_map(|day| day.rate.share);
     // The interval of a day with few units would leave no room for the others; it is cut off where the chart ends.
     let many = days.iter().filter(|day| day.rate.of >= FEW).flat_map(|day| [low(day), limit(day)]).flatten();
     // Where shares are high, the lower part of the chart would be empty.
     let floors = |least: f64| [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least);
-    let floor = many.reduce(f64::min).and_then(floors).unwrap_or(0.0);
+    let floor = shares.chain(many).reduce(f64::min).and_then(floors).unwrap_or(0.0);
     let width = days.len() * DAY + BESIDE;
     let y = |share: f64| 8.0 + 100.0 * (1.0 - share.max(floor)) / (1.0 - floor);
     let last = days.len().saturating_sub(1);

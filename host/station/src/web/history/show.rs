@@ -72,11 +72,11 @@ pub(in crate::web) fn run_address(id: &str) -> String {
 
 /// A share in per cent, never without its interval.
 pub(super) fn share(visit: &Visit, rate: &Rate) -> Markup {
-    let text = |value: f64| visit.words.figures(&format!("{:.1}", 100.0 * value));
-    let Some((share, [low, high])) = rate.share.zip(rate.interval) else { return html! { "–" } };
+    let Some(texts) = rate.per_cent() else { return html! { "–" } };
+    let [share, low, high] = texts.map(|text| visit.words.figures(&text));
     html! {
-        span.share { (text(share)) " %" }
-        " " span.interval { "(" (text(low)) "–" (text(high)) ")" }
+        span.share { (share) " %" }
+        " " span.interval { "(" (low) "–" (high) ")" }
     }
 }
 

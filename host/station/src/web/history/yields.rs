@@ -27,6 +27,8 @@ const MOST_FLIPS: usize = 200;
 const MOST_DAYS: usize = 60;
 /// The most lines that are listed.
 const MOST_LINES: usize = 120;
+/// The least chance that is told as it is.
+const LEAST_CHANCE: f64 = 1e-15;
 /// With fewer units a share says little.
 pub(super) const FEW: u64 = 30;
 
@@ -160,11 +162,16 @@ fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
                     b { (show::said(station)) } " · " (show::said(&plan.product)) " " (show::said(&plan.plan)) (visit.say("told.colon"))
                     (show::share(visit, here)) " " span.soft { (show::of(here)) } " · "
                     (visit.say("yield.elsewhere")) " " (show::share(visit, elsewhere)) " " span.soft { (show::of(elsewhere)) }
-                    @if let Some(chance) = chance { " · p = " (visit.words.figures(&format!("{chance:.1e}"))) }
+                    @if let Some(chance) = chance { " · p " (visit.words.figures(&chance_text(*chance))) }
                 }
             }
         }
     }
+}
+
+/// A chance for people. It is never told to be nought, as far smaller ones come out.
+fn chance_text(chance: f64) -> String {
+    if chance < LEAST_CHANCE { format!("< {LEAST_CHANCE:e}") } else { format!("= {chance:.1e}") }
 }
 
 fn table(visit: &Visit, by: By, lines: &[Yield]) -> Markup {

@@ -7,7 +7,7 @@ use halfrow_station::record::{DeviceSeen, RunCause};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run};
 use crate::common::program;
 use crate::held;
 
@@ -125,7 +125,7 @@ fn no_percentage_is_told_without_its_interval() {
     let made = made();
     let text = said(&made, &["yield"]);
     // Wilson for 1 of 2, by hand: (1 ± z / sqrt(2 + z²)) / 2, since the centre is 1/2.
-    assert!(text.contains("50.0 % (9.5–90.5)"), "{text}");
+    assert!(text.contains("50.0 % (9.5–90.5) 1/2"), "{text}");
     assert!(text.matches(" % ").count() == text.matches(" % (").count(), "{text}");
     assert!(text.contains("first FAIL, in the end PASS"), "{text}");
     let lines = json(&made, &["yield", "--by", "day"]);
@@ -145,6 +145,25 @@ fn what_is_counted_and_listed_can_be_of_one_station() {
     assert_eq!(at_north("yield")["lines"][0]["first_pass"]["of"], 1);
     assert_eq!(at_north("pareto")["failed"], 1);
     assert_eq!(json(&made, &["pareto"])["failed"], 2);
+}
+
+/// Of 70 units five failed, all of them on one day.
+#[test]
+fn a_day_beyond_the_band_is_told_with_its_band() {
+    let mut made = Made::new();
+    for (day, number) in (0..5).map(|number| (0, number)).chain((1..66).map(|day| (day, 0))) {
+        let started_ms = BEGIN_MS + day * DAY_MS + number;
+        let end = if day == 0 { End::Fail(&["memory"]) } else { End::Pass };
+        made.run(&Run { started_ms, ..Run::of(&format!("S{day}-{number}"), end) });
+    }
+    let text = said(&made, &["yield", "--by", "day"]);
+    let row =
+        |day: &str| text.lines().find(|line| line.contains(&format!("final {day}"))).unwrap().to_owned();
+    // With the chance 65/70 each, of five units 2 or fewer pass with 0.0033, and 1 or fewer with 0.00012.
+    assert!(row("2026-11-01").contains("40.0–100.0 %, beyond"), "{text}");
+    assert!(row("2026-11-02").contains("0.0–100.0 %") && !row("2026-11-02").contains("beyond"), "{text}");
+    assert!(text.trim_end().ends_with("\nbeyond the band: CAM-T final 2026-11-01"), "{text}");
+    assert!(!said(&made, &["yield"]).contains("band"));
 }
 
 #[test]

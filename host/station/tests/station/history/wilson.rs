@@ -63,3 +63,17 @@ fn nothing_of_nothing_is_no_rate() {
     assert_eq!((rate.share, rate.interval, rate.text().as_str()), (None, None, "–"));
     assert_eq!(Rate::new(29, 30).text(), "96.7 % (83.3–99.4)");
 }
+
+/// Of [`STATSMODELS`], as text: rounded to as many digits as it takes.
+#[test]
+fn only_all_are_told_as_all_and_only_none_as_none() {
+    for (count, of, told) in [
+        (999_999, 1_000_000, "99.9999 % (99.999–99.99998)"),
+        (999, 1000, "99.9 % (99.4–99.98)"),
+        (1000, 1000, "100.0 % (99.6–100.0)"),
+        (1, 1000, "0.1 % (0.02–0.6)"),
+        (0, 1, "0.0 % (0.0–79.3)"),
+    ] {
+        assert_eq!(Rate::new(count, of).text(), told, "{count} of {of}");
+    }
+}

@@ -207,6 +207,40 @@ fn the_day_so_far_is_the_one_by_the_clock_on_the_wall() {
     assert!(today.contains("today 1 judged"), "{zone}: {today}");
 }
 
+/// All of 200 units passed in five days, and on the sixth one of three. The share of all is 201/203; of 40 units at least 37 pass
+/// then, of three at least 2. An axis down to 90 % would have the third of the last day below its end.
+#[test]
+fn no_day_is_drawn_better_than_it_was() {
+    let mut made = Made::new();
+    for (day, units) in [40, 40, 40, 40, 40, 3].into_iter().zip(0..).map(|(units, day)| (day, units)) {
+        for number in 0..units {
+            let started_ms = BEGIN_MS + day * DAY_MS + number;
+            let end = if day == 5 && number > 0 { End::Fail(&["memory"]) } else { End::Pass };
+            made.run(&Run { started_ms, ..Run::of(&format!("S{day}-{number}"), end) });
+        }
+    }
+    let page = Served::of(made).page("/yield?by=day");
+    // 8 pixels from above is 100 %, and 108 is none: 8 + 100 · 2/3.
+    assert!(page.contains("<path class=\"beyond\" d=\"M66 74.7 "), "{page}");
+}
+
+/// Of 60 units all passed at one station, and none of 60 at the other: p = 6.3e-28, by Python's `math.erfc`.
+#[test]
+fn a_chance_that_nobody_can_imagine_is_told_as_less_than_one_that_can_be() {
+    let mut made = Made::new();
+    for number in 0..60 {
+        for (station, end) in [("north", End::Pass), ("south", End::Fail(&["memory"]))] {
+            made.run(&Run {
+                station,
+                started_ms: BEGIN_MS + number,
+                ..Run::of(&format!("{station}{number}"), end)
+            });
+        }
+    }
+    let page = Served::of(made).page("/yield?by=station");
+    assert!(page.contains(" · p &lt; 1e-15") && !page.contains("p = "), "{page}");
+}
+
 /// Of 70 units five failed, all of them on a day before those that are drawn.
 #[test]
 fn a_day_beyond_the_band_is_named_although_it_is_not_drawn() {
