@@ -84,6 +84,9 @@ impl Range {
 /// Which units are counted.
 #[derive(Debug, Args)]
 pub(super) struct Counted {
+    /// Only of this product
+    #[arg(long, value_name = "NAME")]
+    product: Option<String>,
     /// Only under plans of this name
     #[arg(long, value_name = "NAME")]
     plan: Option<String>,
@@ -100,9 +103,14 @@ pub(super) struct Counted {
 impl Counted {
     /// In the form that the counting functions take.
     pub(super) fn wanted(&self) -> Result<Wanted, Failure> {
-        let Self { plan, station, lane, range } = self;
-        let period = range.period()?;
-        Ok(Wanted { plan: plan.clone(), station: station.clone(), lane: lane.clone(), period })
+        let Self { product, plan, station, lane, range } = self;
+        Ok(Wanted {
+            product: product.clone(),
+            plan: plan.clone(),
+            station: station.clone(),
+            lane: lane.clone(),
+            period: range.period()?,
+        })
     }
 }
 
@@ -115,6 +123,9 @@ struct RunChoice {
     /// Only this verdict
     #[arg(long, value_enum, ignore_case = true)]
     verdict: Option<Word>,
+    /// Only of this product
+    #[arg(long, value_name = "NAME")]
+    product: Option<String>,
     /// Only under plans of this name
     #[arg(long, value_name = "NAME")]
     plan: Option<String>,
@@ -145,10 +156,11 @@ impl Filtered {
 
     /// As a filter.
     pub(super) fn filter(&self) -> Result<Filter, Failure> {
-        let RunChoice { serial, verdict, plan, station, lane, operator } = &self.said;
+        let RunChoice { serial, verdict, product, plan, station, lane, operator } = &self.said;
         Ok(Filter {
             serial: serial.clone(),
             verdict: verdict.map(Into::into),
+            product: product.clone(),
             plan: plan.clone(),
             station: station.clone(),
             lane: lane.clone(),

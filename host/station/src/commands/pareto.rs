@@ -1,7 +1,7 @@
 //! `halfrow-station pareto`
 
 use clap::Args;
-use halfrow::words::count;
+use halfrow::words::{count, plain};
 
 use super::Failure;
 use super::looking::{Counted, Results, either, table};
@@ -28,14 +28,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     either(&pareto, arguments.json, text)
 }
 
-fn text(Pareto { failed, units, bars }: &Pareto) -> String {
+fn text(Pareto { products, judged, failed, units, bars }: &Pareto) -> String {
+    if *judged == 0 {
+        return "no run that matches was judged".to_owned();
+    }
+    let heading = format!("{failed} of {} failed", count(*judged, "judged run"));
+    let products = format!("products: {}", plain(&products.join(", ")));
+    if bars.is_empty() {
+        return format!("{heading}\n{products}");
+    }
     let rows = bars.iter().map(|bar| {
         let name = if bar.name.is_empty() { "no part is suspected" } else { &bar.name };
         vec![name.to_owned(), bar.runs.count.to_string(), bar.runs.text(), bar.units.to_string()]
     });
     format!(
-        "{} of {} failed\n{}",
-        count(*failed, "run"),
+        "{heading}, {} concerned\n{products}\n{}",
         count(*units, "unit"),
         table(&["cause", "runs", "share", "units"], &[1, 3], rows)
     )

@@ -102,9 +102,19 @@ pub(crate) fn plan_names(of: &Snapshot) -> Result<BTreeSet<PlanName>, StoreError
     Ok(plans(of)?.into_values().collect())
 }
 
-/// The hashes of the plans of this name.
-fn plans_named(of: &Snapshot, name: &str) -> Result<Vec<String>, StoreError> {
-    Ok(plans(of)?.into_iter().filter(|(_, plan)| plan.plan == name).map(|(hash, _)| hash).collect())
+/// The hashes of the plans of this product and of this name; `None` if neither is asked for.
+fn plans_asked(
+    of: &Snapshot,
+    product: Option<&str>,
+    name: Option<&str>,
+) -> Result<Option<Vec<String>>, StoreError> {
+    if product.is_none() && name.is_none() {
+        return Ok(None);
+    }
+    let is_asked = |plan: &PlanName| {
+        product.is_none_or(|product| product == plan.product) && name.is_none_or(|name| name == plan.plan)
+    };
+    Ok(Some(plans(of)?.into_iter().filter(|(_, plan)| is_asked(plan)).map(|(hash, _)| hash).collect()))
 }
 
 /// A number of things, which is never negative.

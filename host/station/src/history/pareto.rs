@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use clap::ValueEnum;
 use serde::Serialize;
 
-use super::plans_named;
+use super::plans_asked;
 use super::rate::Rate;
-use super::yields::Wanted;
+use super::yields::{Wanted, judged};
 use crate::store::{Snapshot, StoreError, Value, statements};
 
 /// What failures are counted by. A run has one part or none, and may have several checks: limits that blame the board, and
@@ -35,7 +35,11 @@ pub struct Bar {
 /// The failures of the runs that are wanted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Pareto {
-    /// Runs that failed.
+    /// The products of the runs that were judged.
+    pub products: Vec<String>,
+    /// Runs that were judged: that passed or failed.
+    pub judged: u64,
+    /// Those of them that failed.
     pub failed: u64,
     /// Units among them.
     pub units: u64,
@@ -48,7 +52,7 @@ pub struct Pareto {
 /// # Errors
 /// [`StoreError`] when the database cannot be read.
 pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreError> {
-    let plans = wanted.plan.as_deref().map(|name| plans_named(of, name)).transpose()?;
+    let plans = plans_asked(of, wanted.product.as_deref(), wanted.plan.as_deref())?;
     let period = wanted.period;
     let kind = match by {
         Of::Part => "part",
@@ -62,7 +66,7 @@ pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreErr
         counted.add(row.text(0)?, row.text(1)?, row.text(2)?);
         Ok(())
     })?;
-    Ok(counted.pareto())
+    Ok(counted.pareto(judged(of, wanted)?))
 }
 
 /// The conditions for what is wanted apart from its time, with plans by their hashes. Their values are appended to
@@ -85,7 +89,7 @@ fn filters<'a>(wanted: &'a Wanted, plans: Option<&'a [String]>, values: &mut Vec
         let named: Vec<_> =
             plans.iter().zip(values.len() + 1..).map(|(_, place)| format!("${place}")).collect();
         values.extend(plans.iter().map(Value::from));
-        // If there is no plan of this name, no run matches.
+        // If there is no such plan, no run matches.
         let named = if named.is_empty() { "NULL".to_owned() } else { named.join(", ") };
         filters.push_str(&format!(" AND plan_sha256 IN ({named})"));
     }
@@ -123,13 +127,14 @@ impl Counted {
         }
     }
 
-    fn pareto(self) -> Pareto {
+    fn pareto(self, judged: BTreeMap<String, u64>) -> Pareto {
         let Self { failed, units, names, .. } = self;
         let bar = |(name, (runs, units, _))| Bar { name, runs: Rate::new(runs, failed), units };
         let mut bars: Vec<_> = names.into_iter().map(bar).collect();
         bars.sort_by(|one, other| {
             other.runs.count.cmp(&one.runs.count).then_with(|| one.name.cmp(&other.name))
         });
-        Pareto { failed, units, bars }
+        let all = judged.values().sum();
+        Pareto { products: judged.into_keys().collect(), judged: all, failed, units, bars }
     }
 }

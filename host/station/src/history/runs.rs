@@ -6,7 +6,7 @@ use std::str::FromStr;
 use halfrow::Verdict;
 use serde::{Serialize, Serializer};
 
-use super::{Period, plans_named};
+use super::{Period, plans_asked};
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, Value, statements, values};
 
 /// The most runs on a page.
@@ -19,6 +19,8 @@ pub struct Filter {
     pub serial: Option<String>,
     /// Of this verdict.
     pub verdict: Option<Verdict>,
+    /// Of this product.
+    pub product: Option<String>,
     /// Under plans of this name.
     pub plan: Option<String>,
     /// At this station.
@@ -159,9 +161,11 @@ pub struct Page {
 pub fn page(of: &Snapshot, filter: &Filter, after: Option<&Cursor>, limit: u32) -> Result<Page, StoreError> {
     let limit = limit.clamp(1, MOST);
     let verdict = filter.verdict.map(|verdict| verdict.to_string());
+    let units = filter.serial.as_deref().map(|serial| units(of, serial)).transpose()?;
+    let plans = keys(plans_asked(of, filter.product.as_deref(), filter.plan.as_deref())?);
     let mut runs = Vec::new();
-    for unit in each(filter.serial.as_deref(), |serial| units(of, serial))? {
-        for plan in each(filter.plan.as_deref(), |name| plans_named(of, name))? {
+    for unit in keys(units) {
+        for plan in &plans {
             let equal = [
                 ("unit_id", unit.as_ref()),
                 ("operator_id", filter.operator.as_ref()),
@@ -180,15 +184,9 @@ pub fn page(of: &Snapshot, filter: &Filter, after: Option<&Cursor>, limit: u32) 
     Ok(Page { runs, next })
 }
 
-/// The keys that a name stands for; a single `None` when no name is asked for.
-fn each(
-    name: Option<&str>,
-    keys: impl FnOnce(&str) -> Result<Vec<String>, StoreError>,
-) -> Result<Vec<Option<String>>, StoreError> {
-    Ok(match name {
-        None => vec![None],
-        Some(name) => keys(name)?.into_iter().map(Some).collect(),
-    })
+/// The keys that are asked for, each by itself; a single `None` when none is.
+fn keys(asked: Option<Vec<String>>) -> Vec<Option<String>> {
+    asked.map_or_else(|| vec![None], |keys| keys.into_iter().map(Some).collect())
 }
 
 fn units(of: &Snapshot, serial: &str) -> Result<Vec<String>, StoreError> {

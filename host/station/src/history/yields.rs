@@ -42,6 +42,8 @@ pub enum By {
 /// Which units are wanted; all of them by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
+    /// Of this product.
+    pub product: Option<String>,
     /// Under plans of this name.
     pub plan: Option<String>,
     /// At this station.
@@ -54,7 +56,8 @@ pub struct Wanted {
 
 impl Wanted {
     fn is_wanted(&self, cell: &DayCell) -> bool {
-        self.plan.as_ref().is_none_or(|plan| *plan == cell.plan.plan)
+        self.product.as_ref().is_none_or(|product| *product == cell.plan.product)
+            && self.plan.as_ref().is_none_or(|plan| *plan == cell.plan.plan)
             && self.station.as_ref().is_none_or(|station| *station == cell.station)
             && self.lane.as_ref().is_none_or(|lane| *lane == cell.lane)
     }
@@ -152,6 +155,16 @@ pub fn yields(of: &Snapshot, wanted: &Wanted, by: By) -> Result<Yields, StoreErr
     }
     flips.sort();
     Ok(Yields { lines: lines(&cells, by), flips })
+}
+
+/// The judged runs that are wanted, by product; no product of which none was judged.
+pub(super) fn judged(of: &Snapshot, wanted: &Wanted) -> Result<BTreeMap<String, u64>, StoreError> {
+    let mut products = BTreeMap::<_, u64>::new();
+    for (cell, counts) in cells(of, wanted, &plans(of)?)? {
+        *products.entry(cell.plan.product).or_default() += counts.runs.saturating_sub(counts.errors);
+    }
+    products.retain(|_, judged| *judged > 0);
+    Ok(products)
 }
 
 /// What is counted together.

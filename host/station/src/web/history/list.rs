@@ -83,15 +83,20 @@ fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<Pla
     }
 }
 
-/// The fields that runs, yields and failures have in common: a plant's station, plan, lane, first and last day.
+/// The fields that runs, yields and failures have in common: a plant's station, product, plan, lane, first and last day.
 pub(super) fn common(
     visit: &Visit,
     asked: &RunFilter,
     lanes: &[String],
     plans: &BTreeSet<PlanName>,
 ) -> Markup {
+    let products: BTreeSet<_> = plans.iter().map(|plan| &plan.product).collect();
     html! {
         @if visit.is_plant { (field(visit.say("nav.station"), "station", "search", &asked.station)) }
+        label { span { (visit.say("history.product")) }
+            input type="search" name="product" value=(asked.product) list="products";
+        }
+        datalist #products { @for product in products { option value=(product) {} } }
         label { span { (visit.say("history.plan")) }
             input type="search" name="plan" value=(asked.plan) list="plans";
         }

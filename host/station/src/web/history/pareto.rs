@@ -24,23 +24,32 @@ pub(super) async fn page(
     let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| Ok((pareto::pareto(now, &wanted, by)?, history::plan_names(now)?));
     let (found, plans) = app.look(&visit, look).await?;
-    let counts = [("runs", found.failed.to_string()), ("units", found.units.to_string())];
-    let counts = counts.each_ref().map(|(name, count)| (*name, count.as_str()));
     let content = html! {
         h1 { (visit.say("pareto.title")) }
         (yields::form(&visit, ("/pareto", &yields::choice(&visit, by, word)), &asked, &list::lanes(&app), &plans))
-        @if found.failed == 0 {
+        @if found.judged == 0 {
             p.nothing { (visit.say("pareto.none")) }
         } @else {
             p.soft {
-                (visit.words.fill("pareto.failed", &counts)) " "
-                @if by == Of::Check { (visit.say("pareto.several")) }
+                (said(&visit, &found)) " "
+                @if by == Of::Check && found.failed > 0 { (visit.say("pareto.several")) }
             }
-            (table(&visit, &found))
+            @if found.failed > 0 { (table(&visit, &found)) }
         }
     };
     let page = Page { here: Here::Pareto, title: visit.say("pareto.title"), head: show::head(), content };
     Ok(page.answer(&visit))
+}
+
+/// How many runs failed, of how many, and of which products.
+fn said(visit: &Visit, found: &Pareto) -> Markup {
+    let counts = [("runs", found.failed), ("judged", found.judged), ("units", found.units)];
+    let counts = counts.map(|(name, count)| (name, count.to_string()));
+    let products = found.products.join(visit.say("told.list"));
+    html! {
+        (visit.words.fill("pareto.failed", &counts.each_ref().map(|(name, count)| (*name, count.as_str()))))
+        " " (show::said(&visit.words.fill("pareto.products", &[("products", &products)])))
+    }
 }
 
 fn word(visit: &Visit, by: Of) -> &'static str {

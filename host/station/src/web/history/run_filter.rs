@@ -17,6 +17,7 @@ use crate::web::visit::Visit;
 pub(super) struct RunFilter {
     pub(super) serial: String,
     pub(super) verdict: String,
+    pub(super) product: String,
     pub(super) plan: String,
     pub(super) station: String,
     pub(super) lane: String,
@@ -62,6 +63,7 @@ impl RunFilter {
             // What was scanned is taken as it is: a blank at its end is part of it.
             serial: Some(self.serial.clone()).filter(|serial| !serial.is_empty()),
             verdict,
+            product: some(&self.product),
             plan: some(&self.plan),
             station: some(&self.station),
             lane: some(&self.lane),
@@ -76,6 +78,7 @@ impl RunFilter {
     /// Like [`Self::filter`].
     pub(super) fn wanted(&self) -> Result<Wanted, Wrong> {
         Ok(Wanted {
+            product: some(&self.product),
             plan: some(&self.plan),
             station: some(&self.station),
             lane: some(&self.lane),
@@ -105,19 +108,21 @@ impl RunFilter {
     fn period(&self) -> Result<Period, Wrong> {
         let all = Period::default();
         let moment = |text: &str, days| moment(text, days).ok_or_else(|| Wrong(text.to_owned()));
-        Ok(Period {
-            from_ms: some(&self.from).map_or(Ok(all.from_ms), |from| moment(&from, 0))?,
-            until_ms: some(&self.until).map_or(Ok(all.until_ms), |until| moment(&until, 1))?,
-        })
+        let from_ms = some(&self.from).map_or(Ok(all.from_ms), |from| moment(&from, 0))?;
+        let until_ms = some(&self.until).map_or(Ok(all.until_ms), |until| moment(&until, 1))?;
+        // There is no moment in it, and what is found in none looks like a line without failures.
+        if until_ms <= from_ms { Err(Wrong(self.until.clone())) } else { Ok(Period { from_ms, until_ms }) }
     }
 
     /// The address at `path` with the same query, from the run after `after` on.
     pub(super) fn address(&self, path: &str, after: Option<&Cursor>) -> String {
         let after = after.map(ToString::to_string).unwrap_or_default();
-        let Self { serial, verdict, plan, station, lane, operator, from, until, by, after: _ } = self;
+        let Self { serial, verdict, product, plan, station, lane, operator, from, until, by, after: _ } =
+            self;
         let all = [
             ("serial", serial),
             ("verdict", verdict),
+            ("product", product),
             ("plan", plan),
             ("station", station),
             ("lane", lane),

@@ -132,6 +132,10 @@ fn no_percentage_is_told_without_its_interval() {
     assert_eq!(lines["lines"][1]["day"], "2026-11-02");
     assert_eq!(lines["lines"][0]["errors"]["count"], 1);
     let failures = said(&made, &["pareto"]);
+    assert!(
+        failures.starts_with("1 of 3 judged runs failed, 1 unit concerned\nproducts: CAM-T\n"),
+        "{failures}"
+    );
     assert!(failures.contains("memory") && failures.contains("100.0 % (20.7–100.0)"), "{failures}");
 }
 
@@ -145,6 +149,50 @@ fn what_is_counted_and_listed_can_be_of_one_station() {
     assert_eq!(at_north("yield")["lines"][0]["first_pass"]["of"], 1);
     assert_eq!(at_north("pareto")["failed"], 1);
     assert_eq!(json(&made, &["pareto"])["failed"], 2);
+}
+
+/// Nobody may take a misspelt name for a line without failures.
+#[test]
+fn without_failures_it_is_told_whether_anything_was_judged() {
+    let mut made = made();
+    assert_eq!(said(&made, &["pareto", "--plan", "typo"]).trim_end(), "no run that matches was judged");
+    let second = said(&made, &["pareto", "--from", "2026-11-02"]);
+    assert_eq!(second.trim_end(), "0 of 1 judged run failed\nproducts: CAM-T");
+    let error = Run { lane: "2".to_owned(), ..Run::of("S5", End::Error(RunCause::Link)) };
+    made.run(&error);
+    let of_error = json(&made, &["pareto", "--lane", "2"]);
+    assert_eq!((&of_error["judged"], &of_error["failed"]), (&0.into(), &0.into()), "an ERROR judges nothing");
+}
+
+#[test]
+fn products_whose_plans_have_one_name_are_told_apart() {
+    let mut made = made();
+    made.run(&Run { product: "CAM-U", ..Run::of("U1", End::Fail(&["clock"])) });
+    let of = |product: &str, command: &str| json(&made, &[command, "--plan", "final", "--product", product]);
+    let serials = |page: &Value| -> Vec<String> {
+        page["runs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|run| run["serial"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    assert_eq!(serials(&of("CAM-U", "history")), ["U1"]);
+    assert_eq!(serials(&json(&made, &["history", "--product", "CAM-T"])), ["S3", "S2", "S1", "S1"]);
+    assert_eq!(serials(&of("typo", "history")), Vec::<String>::new());
+    let lines = of("CAM-U", "yield")["lines"].clone();
+    assert_eq!((&lines[0]["product"], lines.as_array().unwrap().len()), (&"CAM-U".into(), 1));
+    let both = json(&made, &["pareto", "--plan", "final"]);
+    assert_eq!((&both["failed"], &both["products"]), (&2.into(), &serde_json::json!(["CAM-T", "CAM-U"])));
+    let one = of("CAM-U", "pareto");
+    assert_eq!(
+        (&one["failed"], &one["judged"], &one["products"][0]),
+        (&1.into(), &1.into(), &"CAM-U".into())
+    );
+    assert_eq!(one["bars"][0]["name"], "clock");
+    let to = made.folder().path().join("of-u");
+    let exported = said(&made, &["export", "--product", "CAM-U", "--to", to.to_str().unwrap()]);
+    assert!(exported.starts_with("1 run is in "), "{exported}");
 }
 
 /// Of 70 units five failed, all of them on one day.

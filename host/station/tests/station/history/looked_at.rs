@@ -159,8 +159,24 @@ fn failures_have_bars_by_part_and_by_check() {
     };
     assert!(row(&served.page("/pareto"), "memory").contains("</svg> 15</td>"));
     assert!(row(&served.page("/pareto?by=check"), "verify").contains("</svg> 15</td>"));
-    assert!(served.page("/pareto").contains("Runs that failed: 15; units concerned: "));
-    assert!(served.page("/pareto?plan=none").contains("There are no failures that match."));
+    let page = served.page("/pareto");
+    assert!(page.contains("Judged runs that failed: 15 of "), "{page}");
+    assert!(page.contains("Products: CAM-T."), "{page}");
+    for nothing in ["plan=none", "product=none", "from=2026-12-05"] {
+        assert!(
+            served.page(&format!("/pareto?{nothing}")).contains("No run that matches was judged."),
+            "{nothing}"
+        );
+    }
+    // As at the command line.
+    for page in ["pareto", "yield", "history", "history.csv"] {
+        let answer = served.get(&format!("/{page}?from=2026-12-05&until=2026-11-01"));
+        assert!(
+            answer.status == 400 && answer.text().contains("“2026-11-01” cannot be"),
+            "{}",
+            answer.text()
+        );
+    }
 }
 
 #[test]

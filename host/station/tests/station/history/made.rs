@@ -34,6 +34,7 @@ pub(crate) enum End {
 /// A run to be entered.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
+    pub(crate) product: &'static str,
     pub(crate) serial: String,
     pub(crate) plan: (&'static str, &'static str),
     pub(crate) station: &'static str,
@@ -56,6 +57,7 @@ impl Run {
         let [serial, lane, operator] = [serial, "1", "weber"].map(str::to_owned);
         let station = "station 7";
         Self {
+            product: PRODUCT,
             serial,
             plan: ("final", "1"),
             station,
@@ -130,7 +132,7 @@ impl Made {
 
     /// Enters a run of this id.
     pub(crate) fn run_as(&mut self, id: String, run: &Run) {
-        let plan = plan(run.plan);
+        let plan = plan(run);
         let head = self.store.begin(RunHead { id, ..self.head(run) }, &plan).unwrap();
         self.finish(run, head, plan);
     }
@@ -143,7 +145,7 @@ impl Made {
     /// Like [`Self::begin`], if the store accepts the run.
     pub(crate) fn try_begin(&mut self, run: &Run) -> Result<(RunHead, PlanRecord), StoreError> {
         self.entered += 1;
-        let plan = plan(run.plan);
+        let plan = plan(run);
         Ok((self.store.begin(self.head(run), &plan)?, plan))
     }
 
@@ -179,7 +181,7 @@ impl Made {
             station: run.station.to_owned(),
             lane: run.lane.clone(),
             unit_id: id(run.started_ms, 1_000_000 + self.entered),
-            product: PRODUCT.to_owned(),
+            product: run.product.to_owned(),
             serial: run.serial.clone(),
             variant: String::new(),
             operator: run.operator.clone(),
@@ -204,11 +206,14 @@ pub(crate) fn id(ms: i64, number: u32) -> String {
     uuid::Builder::from_unix_timestamp_millis(ms.unsigned_abs(), &random).into_uuid().to_string()
 }
 
-fn plan((name, version): (&str, &str)) -> PlanRecord {
-    let text = format!("schema = 1 # {name} {version}\n");
+fn plan(Run { plan: (name, version), product, .. }: &Run) -> PlanRecord {
+    let text = match (*name, *version) {
+        (name, version) if *product == PRODUCT => format!("schema = 1 # {name} {version}\n"),
+        (name, version) => format!("schema = 1 # {product} {name} {version}\n"),
+    };
     // The station computes the hash of a plan without files the same way.
     let sha256 = halfrow::result::sha256([text.as_bytes()]);
-    let (name, version) = (name.to_owned(), version.to_owned());
+    let [name, version] = [name, version].map(|text| (*text).to_owned());
     PlanRecord { sha256, name, version, text, files: None }
 }
 

@@ -70,12 +70,14 @@ fn pages_together_are_the_whole_list_for_every_combination_of_filters() {
     let (made, entered) = made();
     let text = |is: bool, value: &str| is.then(|| value.to_owned());
     let mut found_any = 0;
-    for chosen in 0..64 {
+    for chosen in 0..128 {
         let is = |bit: u32| chosen >> bit & 1 == 1;
         let all = Period::default();
         let some = Period { from_ms: BEGIN_MS + HOUR_MS, until_ms: BEGIN_MS + 9 * HOUR_MS };
         let filter = Filter {
             serial: text(is(0), "S3"),
+            // All runs are of this product, and of several plans.
+            product: text(is(6), super::made::PRODUCT),
             plan: text(is(1), "final"),
             station: None,
             lane: text(is(2), "1"),
