@@ -8,7 +8,7 @@ use super::PlanName;
 use super::rate::Rate;
 use super::yields::Yield;
 
-/// The chance that any station of a plan is marked although all are alike.
+/// The chance that any station under any of the plans is marked although all are alike.
 const BY_CHANCE: f64 = 0.01;
 /// The least number of cases to be expected in each of the four cells for the test to hold.
 const LEAST: f64 = 5.0;
@@ -27,7 +27,7 @@ pub struct Drift {
     pub elsewhere: Rate,
     /// The chance of so great a difference between stations that are alike; `None` where too few units were judged to tell.
     pub chance: Option<f64>,
-    /// Whether that is too small to be taken for chance, given the number of stations.
+    /// Whether that is too small to be taken for chance, given how many stations are compared under all plans.
     pub is_marked: bool,
 }
 
@@ -40,16 +40,17 @@ pub fn drifts(lines: &[Yield]) -> Vec<Drift> {
             plans.entry(&line.plan).or_default().push((station, line.first_pass));
         }
     }
-    let several = plans.into_iter().filter(|(_, stations)| stations.len() > 1);
-    several.flat_map(|(plan, stations)| of_plan(plan, &stations)).collect()
+    plans.retain(|_, stations| stations.len() > 1);
+    let comparisons = plans.values().map(Vec::len).sum();
+    plans.into_iter().flat_map(|(plan, stations)| of_plan(plan, &stations, comparisons)).collect()
 }
 
-fn of_plan(plan: &PlanName, stations: &[(&String, Rate)]) -> Vec<Drift> {
+fn of_plan(plan: &PlanName, stations: &[(&String, Rate)], comparisons: usize) -> Vec<Drift> {
     let all = stations.iter().fold((0, 0), |(count, of), (_, rate)| (count + rate.count, of + rate.of));
     let drift = |(station, here): &(&String, Rate)| {
         let elsewhere = Rate::new(all.0 - here.count, all.1 - here.of);
         let chance = chance(here, &elsewhere);
-        let is_marked = chance.is_some_and(|chance| chance < BY_CHANCE / stations.len() as f64);
+        let is_marked = chance.is_some_and(|chance| chance < BY_CHANCE / comparisons as f64);
         Drift { plan: plan.clone(), station: (*station).clone(), here: *here, elsewhere, chance, is_marked }
     };
     stations.iter().map(drift).collect()

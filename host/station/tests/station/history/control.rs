@@ -1,5 +1,6 @@
 //! Limits of a p-chart and the test of two proportions, compared with the figures of SciPy and statsmodels.
 
+use halfrow_station::history::PlanName;
 use halfrow_station::history::control::{Limits, limits};
 use halfrow_station::history::drift::drifts;
 use halfrow_station::history::rate::Rate;
@@ -67,6 +68,23 @@ fn a_station_that_judges_otherwise_is_marked() {
         assert_eq!(first.is_marked, chance < 0.005);
         assert_eq!((first.elsewhere.count, first.elsewhere.of), (others, of));
     }
+}
+
+/// Of two stations 473 of 500 and 4850 of 5000 passed: p = 0.0037396, by Python's `math.erfc`. That is less than 0.01 / 2.
+#[test]
+fn with_more_plans_on_a_page_a_station_needs_more_to_be_marked() {
+    let plan = |name: &str| {
+        let of = |station: &str, passed, judged| {
+            let line = line(station, Rate::new(passed, judged));
+            Yield { plan: PlanName { plan: name.to_owned(), ..line.plan.clone() }, ..line }
+        };
+        [of("1", 473, 500), of("2", 4850, 5000)]
+    };
+    let marked = |plans: &[&str]| {
+        let lines: Vec<_> = plans.iter().flat_map(|name| plan(name)).collect();
+        drifts(&lines).iter().filter(|drift| drift.is_marked).count()
+    };
+    assert_eq!([marked(&["a"]), marked(&["a", "b"])], [2, 0]);
 }
 
 #[test]
