@@ -178,13 +178,14 @@ fn or_why(today: Result<Markup, Trouble>) -> Markup {
 }
 
 async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
-    let Range { start: from_ms, end: until_ms } = clock::day_ms(clock::now_ms());
+    let now_ms = clock::now_ms();
+    let Range { start: from_ms, end: until_ms } = clock::day_ms(now_ms);
     let period = Period { from_ms, until_ms };
     let wanted = Wanted { period, ..Wanted::default() };
     let look = move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.unsent()?));
     let (counted, unsent) = app.look(visit, look).await?;
     let has_plant = app.settings().plant.is_some();
-    Ok(html! { (summed(visit, &counted)) (left(visit, &unsent, has_plant)) })
+    Ok(html! { (summed(visit, &counted, now_ms)) (left(visit, &unsent, has_plant)) })
 }
 
 /// What the plant does not have yet, and what that other sink does not have that lacks most: a result that two of them lack
@@ -206,7 +207,8 @@ fn left(visit: &Visit, unsent: &[Unsent], has_plant: bool) -> Markup {
     }
 }
 
-fn summed(visit: &Visit, Yields { lines, .. }: &Yields) -> Markup {
+/// What was judged on the day of `now_ms`, by the clock on the wall. The history has days of UTC, so it is told which one is meant.
+fn summed(visit: &Visit, Yields { lines, .. }: &Yields, now_ms: i64) -> Markup {
     let sum = |of: fn(&crate::history::yields::Yield) -> Rate| {
         lines.iter().map(of).fold((0, 0), |(count, all), rate| (count + rate.count, all + rate.of))
     };
@@ -214,6 +216,13 @@ fn summed(visit: &Visit, Yields { lines, .. }: &Yields) -> Markup {
     let (errors, runs) = sum(|line| line.errors);
     let first_pass = visit.words.figures(&Rate::new(passed, units).text());
     let [judged, units, errors] = [runs - errors, units, errors].map(|count| count.to_string());
-    let values = [("judged", &*judged), ("units", &units), ("first", &first_pass), ("errors", &errors)];
+    let date = clock::local(now_ms).strftime("%Y-%m-%d (UTC%:z)").to_string();
+    let values = [
+        ("date", &*date),
+        ("judged", &judged),
+        ("units", &units),
+        ("first", &first_pass),
+        ("errors", &errors),
+    ];
     html! { (visit.words.fill("today.counted", &values)) }
 }

@@ -204,7 +204,11 @@ fn the_day_so_far_is_the_one_by_the_clock_on_the_wall() {
         made.run(&Run { started_ms: now_ms - hours * HOUR_MS, ..Run::of(serial, End::Pass) });
     }
     let today = Served::in_zone(made, &zone).page("/today");
-    assert!(today.contains("today 1 judged"), "{zone}: {today}");
+    let local = jiff::Timestamp::from_millisecond(now_ms + east * 60_000).unwrap();
+    let (hours, minutes) = (east.abs() / 60, east.abs() % 60);
+    let sign = if east < 0 { '-' } else { '+' };
+    let day = format!("{} (UTC{sign}{hours:02}:{minutes:02}): 1 judged", local.strftime("%Y-%m-%d"));
+    assert!(today.contains(&day), "{zone}: {day}: {today}");
 }
 
 /// All of 200 units passed in five days, and on the sixth one of three. The share of all is 201/203; of 40 units at least 37 pass

@@ -35,6 +35,6 @@ fn lanes_are_shown_while_the_folder_is_away_and_no_page_asks_for_another_one() {
             fs::remove_dir(&data).unwrap();
         }
         fs::rename(&aside, &data).unwrap();
-        assert!(here.get("/").send().text().contains("today 0 judged"), "the control");
+        assert!(here.get("/").send().text().contains(": 0 judged, 0 for"), "the control");
     }
 }

@@ -292,7 +292,7 @@ fn the_page_says_plan_station_and_operator_when_it_was_saved_and_the_day() {
     // One of one: the lower end of Wilson's interval is 1 / (1 + 1.96²).
     assert!(page.contains("1 for the first time · first pass 100.0 % (20.7–100.0) · errors 0"), "{page}");
     operator.post("/scan", &[("text", SERIALS[0])]).until_taken();
-    let german = operator.get("/").with("accept-language", "de").until("heute 2 beurteilt, davon 1 zum");
+    let german = operator.get("/").with("accept-language", "de").until("): 2 beurteilt, davon 1 zum");
     assert!(german.contains("100,0 % (20,7–100,0)") && german.contains("(Bediener)"), "{german}");
 }
 
