@@ -1,5 +1,5 @@
--- nth counts the judgements of this unit under plans of this name; an ERROR uses up no number. The mock that checks a shift is no
--- unit: its runs have the number 0, and count nowhere.
+-- nth counts the judgements of this unit under plans of this name; an ERROR uses up no number. What checks a shift is no
+-- product: its runs have the number 0, and count nowhere.
 UPDATE run SET
   state = 'final', verdict = $1, exit_code = $2, cause = $3, headline = $4, ended_ms = $5, record_sha256 = $6,
   board_kind = $7, device = $8, build = $9,
@@ -8,6 +8,6 @@ UPDATE run SET
     JOIN plan AS theirs ON theirs.sha256 = earlier.plan_sha256
     JOIN plan AS ours ON ours.sha256 = run.plan_sha256
     WHERE earlier.unit_id = run.unit_id AND theirs.name = ours.name AND theirs.product = ours.product
-      AND earlier.id < run.id AND earlier.verdict IN ('PASS', 'FAIL')
+      AND earlier.id < run.id AND earlier.nth > 0 AND earlier.verdict IN ('PASS', 'FAIL')
   ) END
 WHERE id = $11 AND state = 'open' AND fence = $12;

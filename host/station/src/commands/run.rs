@@ -260,6 +260,7 @@ fn text(saved: &Saved, plan: &Plan) -> String {
     }
     let judgement = match ended.verdict {
         Verdict::Error => "which is no judgement of the unit".to_owned(),
+        _ if stored.nth == 0 => "which is in no yield".to_owned(),
         _ => format!("the unit's judgement {}", stored.nth),
     };
     lines.push(format!("run       {}, {judgement}", record.run.id));

@@ -188,6 +188,9 @@ fn text(JobResult { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. 
     let (run, ended) = (&saved.record.run, &saved.record.conclusion);
     let note = match (is_sent, counts) {
         (false, _) => "; the plant does not have it yet",
+        (true, Some(false)) if saved.record.is_of_reference() => {
+            "; it is in no yield, for its unit checks shifts"
+        }
         (true, Some(false)) => "; it does not count, for the job was cancelled or claimed again",
         (true, _) if ended.verdict == Verdict::Error => "; the job is given back",
         (true, _) => "",

@@ -7,7 +7,6 @@ use parking_lot::Mutex;
 
 use super::logged::reasons;
 use crate::history::PlanName;
-use crate::plan::mock::is_mock;
 use crate::record::Record;
 use crate::settings::{LaneSettings, Settings};
 
@@ -123,13 +122,14 @@ impl Counter {
     }
 
     /// Counts a run that is saved, however late; one whose verdict still waits for the plant is not counted again.
-    pub(super) fn saved(&self, Record { seconds, run, plan, .. }: &Record) {
+    pub(super) fn saved(&self, record: &Record) {
+        let Record { seconds, run, plan, .. } = record;
         let Some(ended) = self.unsaved.lock().remove(&run.id) else { return };
         let took = ended.elapsed().as_secs_f64();
         self.with(|figures| {
             figures.commits.add(took);
-            // Yields leave the mock out, too.
-            if let Some(seconds) = seconds.filter(|_| !is_mock(&run.serial)) {
+            // Yields leave out what checks shifts, too.
+            if let Some(seconds) = seconds.filter(|_| !record.is_of_reference()) {
                 let plan = PlanName { product: run.product.clone(), plan: plan.name.clone() };
                 let of = (plan, run.lane.clone());
                 figures.runs.entry(of).or_insert(Histogram::new(RUNS)).add(seconds);

@@ -82,7 +82,7 @@ impl Tally {
         Self { by_lane, rests, before: Mutex::default() }
     }
 
-    /// Counts every run that is over, except those of the mock that checks a shift.
+    /// Counts every run that is over, except those of what checks a shift.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.

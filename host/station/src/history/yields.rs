@@ -6,7 +6,7 @@
 //! |---|---|
 //! | PASS, FAIL | the first one of a unit in the first pass, the last one in the final yield |
 //! | ERROR, crashes and refusals among them | only in the rate of errors: the unit was not judged |
-//! | open | nowhere |
+//! | open, or of a unit that checks a shift | nowhere |
 //! | FAIL with a waiver | as the FAIL that it is; if it is the unit's last judgement, the unit counts as waived, too |
 
 use std::collections::BTreeMap;

@@ -56,9 +56,17 @@ impl Production {
     /// Whether the unit of this serial number checks shifts, and so is not a product.
     #[must_use]
     pub(crate) fn is_reference(&self, serial: &str) -> bool {
-        let is_bad = |bad: &Bad| matches!(bad, Bad::Unit(bad) if bad == serial);
-        let checks = |shift: &Shift| shift.good == serial || is_bad(&shift.bad);
-        mock::is_mock(serial) || self.shift.as_ref().is_some_and(checks)
+        mock::is_mock(serial) || self.references().contains(&serial)
+    }
+
+    /// The serial numbers of the units that check shifts; the mock has others.
+    pub(crate) fn references(&self) -> Vec<&str> {
+        let Some(Shift { good, bad, .. }) = &self.shift else { return Vec::new() };
+        let bad = match bad {
+            Bad::Unit(bad) => Some(bad.as_str()),
+            Bad::Mock => None,
+        };
+        std::iter::once(good.as_str()).chain(bad).collect()
     }
 
     /// Whether a run of this serial number can count, in a lane that was checked.

@@ -13,6 +13,9 @@ use halfrow::Verdict;
 use halfrow::result::FileHash;
 use serde::{Deserialize, Serialize};
 
+use crate::plan::Production;
+use crate::plan::mock::is_mock;
+
 pub use blobs::{BlobError, Blobs};
 pub(crate) use blobs::{Piece, is_hash, made_within, synced};
 pub use conclude::Conclusion;
@@ -220,6 +223,17 @@ impl Record {
     pub fn binds(&self) -> Option<&str> {
         let is_new = self.device == DeviceSeen::New && self.conclusion.verdict != Verdict::Error;
         self.board.as_ref().filter(|_| is_new)?.device.as_deref()
+    }
+
+    /// Whether its unit checks shifts by its plan, and so is no product: it counts nowhere.
+    pub(crate) fn is_of_reference(&self) -> bool {
+        self.is_reference_by(Production::of_text(&self.plan.text).as_ref())
+    }
+
+    /// The same by what its plan demands, for whoever has read that before.
+    pub(crate) fn is_reference_by(&self, production: Option<&Production>) -> bool {
+        let serial = &self.run.serial;
+        is_mock(serial) || production.is_some_and(|production| production.is_reference(serial))
     }
 
     /// Parses a record.

@@ -11,14 +11,18 @@ use nix::sys::statvfs::statvfs;
 
 use super::database::{Database, DatabaseError, Engine, values};
 use super::folder::log_of;
-use super::statements::{SCHEMA_VERSION, SCHEMAS};
+use super::statements::{PLAN_TEXTS, SCHEMA_VERSION, SCHEMAS, UNCOUNT_UNIT};
 use super::{StoreError, generation};
+use crate::plan::Production;
 use crate::record::synced;
 
 /// The newest version that a database has.
 pub(super) const NEWEST: &str = "SELECT max(n) FROM schema_version";
 /// Notes that the database has another version.
 const NOTE: &str = "INSERT INTO schema_version (n, sha256, applied_ms) VALUES ($1, $2, $3)";
+
+/// The schema that counts anew without the units that check shifts. Which ones these are is in the texts of the plans.
+const WITHOUT_REFERENCES: i64 = 8;
 
 /// How many bytes of two copies are compared at a time: a database may have gigabytes.
 const BLOCK: usize = 64 << 10;
@@ -48,11 +52,29 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
             to.batch("LOCK TABLE schema_version")?;
         }
         new.iter().try_for_each(|(version, schema)| {
+            if *version == WITHOUT_REFERENCES {
+                uncount_references(to)?;
+            }
             to.batch(&engine.words(schema))?;
             to.execute(NOTE, values![*version, &sha256([schema]), now_ms]).map(drop)
         })
     };
     database.transaction(change).map_err(refused)
+}
+
+/// Gives the number 0 to every run of a unit that checks shifts by its plan.
+fn uncount_references(to: &mut dyn Database) -> Result<(), DatabaseError> {
+    let plans = to.all(PLAN_TEXTS, &[], |row| {
+        Ok((row.get::<String>(0)?, row.get::<String>(1)?, row.get::<String>(2)?))
+    })?;
+    for (plan, product, text) in plans {
+        // Where a plan cannot be read, `check` takes nothing for such a unit either.
+        let Some(production) = Production::of_text(&text) else { continue };
+        for serial in production.references() {
+            to.execute(UNCOUNT_UNIT, values![&plan, &product, serial])?;
+        }
+    }
+    Ok(())
 }
 
 /// The version of a database; 0 if it has none.

@@ -263,9 +263,9 @@ impl Store {
         let bytes = record.bytes(steps)?;
         let hash = self.folder.blobs().put(&bytes)?;
         let run = || record.run.id.clone();
-        let sinks = Arc::clone(&self.sinks);
+        let (sinks, is_reference) = (Arc::clone(&self.sinks), record.is_of_reference());
         let changed = self.change("to end a run", |to| {
-            let changed = rows::finish(to, record, &hash)?;
+            let changed = rows::finish(to, record, &hash, is_reference)?;
             if changed == 1 {
                 outbox::enter(to, &sinks, Kind::Run, &record.run.id)?;
             }

@@ -2,7 +2,6 @@
 
 use super::database::{Database, DatabaseError, values};
 use super::{bindings, statements as sql};
-use crate::plan::mock::is_mock;
 use crate::record::{PlanRecord, Record, RunHead};
 
 /// Enters unit, plan and open run. Returns the unit's id and the fence. The unit is made with the id that `run` names if
@@ -44,9 +43,14 @@ pub(super) fn unit(to: &mut dyn Database, run: &RunHead, plan: &PlanRecord) -> R
     Ok(unit)
 }
 
-/// Ends a run, with all that belongs to it. Returns the number of runs that it ended: 0, and then nothing is changed,
-/// when the run is not open, or another holder's.
-pub(super) fn finish(to: &mut dyn Database, record: &Record, hash: &str) -> Result<u64, DatabaseError> {
+/// Ends a run, with all that belongs to it; that of a unit that checks shifts, which `is_reference` says, counts nowhere. Returns
+/// the number of runs that it ended: 0, and then nothing is changed, when the run is not open, or another holder's.
+pub(super) fn finish(
+    to: &mut dyn Database,
+    record: &Record,
+    hash: &str,
+    is_reference: bool,
+) -> Result<u64, DatabaseError> {
     let id = &record.run.id;
     let (ended, board) = (&record.conclusion, record.board.as_ref());
     let changed = to.execute(
@@ -61,7 +65,7 @@ pub(super) fn finish(to: &mut dyn Database, record: &Record, hash: &str) -> Resu
             board.map(|board| &board.kind),
             board.and_then(|board| board.device.as_ref()),
             board.map(|board| &board.build),
-            i64::from(is_mock(&record.run.serial)),
+            i64::from(is_reference),
             id,
             record.run.fence,
         ],

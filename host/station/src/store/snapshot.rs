@@ -1,6 +1,7 @@
 //! The tables as they are at one moment, and as they come out when they are made anew from the records.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 
@@ -15,6 +16,7 @@ use super::{
     Folder, OpenRun, Plant, Rebinding, StoreError, Stored, bindings, folder, generation, migrations,
     open_run, rows, statements,
 };
+use crate::plan::Production;
 use crate::record::{PlanRecord, Record};
 
 /// The tables that follow from the records and the audit, each with its key.
@@ -248,6 +250,8 @@ impl Snapshot {
 #[derive(Debug)]
 pub(crate) struct Rebuilt {
     database: Box<dyn Database>,
+    /// What plans demand, by their hashes, as far as they had to be read; `None` where this program cannot.
+    plans: BTreeMap<String, Option<Production>>,
 }
 
 impl Rebuilt {
@@ -263,7 +267,7 @@ impl Rebuilt {
         let database = opened.map_err(|source| refused(source.into()))?;
         let mut database: Box<dyn Database> = Box::new(Sqlite::new(database));
         migrations::apply(&mut *database, "a rebuilt index".as_ref(), 0)?;
-        Ok(Self { database })
+        Ok(Self { database, plans: BTreeMap::new() })
     }
 
     /// Enters the run of this record, whose hash is `hash`. Runs must come in the order of their ids.
@@ -271,10 +275,20 @@ impl Rebuilt {
     /// # Errors
     /// [`StoreError`] when it contradicts the runs before.
     pub(crate) fn add(&mut self, record: &Record, hash: &str) -> Result<(), StoreError> {
+        let is_reference = self.is_reference(record);
         self.change(|to| {
             rows::open(to, &record.run, &record.plan)?;
-            rows::finish(to, record, hash).map(drop)
+            rows::finish(to, record, hash, is_reference).map(drop)
         })
+    }
+
+    /// Whether the unit of this record checks shifts. There may be a million records by one plan, and only that is read.
+    pub(super) fn is_reference(&mut self, record: &Record) -> bool {
+        let PlanRecord { sha256, text, .. } = &record.plan;
+        if !self.plans.contains_key(sha256) {
+            self.plans.insert(sha256.clone(), Production::of_text(text));
+        }
+        record.is_reference_by(self.plans.get(sha256).and_then(Option::as_ref))
     }
 
     /// Enters an open run.

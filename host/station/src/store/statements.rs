@@ -2,7 +2,7 @@
 
 /// The schemas, in order: numbered files that are never edited. The column `retest_of` of a run is not used: `nth` and the table
 /// `retest` say what was judged again.
-pub(super) const SCHEMAS: [&str; 7] = [
+pub(super) const SCHEMAS: [&str; 8] = [
     include_str!("../../sql/schema-1.sql"),
     include_str!("../../sql/schema-2.sql"),
     include_str!("../../sql/schema-3.sql"),
@@ -10,6 +10,7 @@ pub(super) const SCHEMAS: [&str; 7] = [
     include_str!("../../sql/schema-5.sql"),
     include_str!("../../sql/schema-6.sql"),
     include_str!("../../sql/schema-7.sql"),
+    include_str!("../../sql/schema-8.sql"),
 ];
 
 /// Words of a plant's statements about jobs and boards. Earlier ones use later ones.
@@ -78,6 +79,8 @@ statements! {
     pub(super) ADD_UNIT = "add-unit.sql";
     pub(super) UNIT_OF = "unit-of.sql";
     pub(super) PLAN_OF_VERSION = "plan-of-version.sql";
+    pub(super) PLAN_TEXTS = "plan-texts.sql";
+    pub(super) UNCOUNT_UNIT = "uncount-unit.sql";
     pub(super) PLAN_EARLIER = "plan-earlier.sql";
     pub(super) UNIT_EARLIER = "unit-earlier.sql";
     pub(super) OPEN_RUN = "open-run.sql";

@@ -7,7 +7,6 @@ use super::super::database::{Database, DatabaseError, values};
 use super::super::outbox::AuditLine;
 use super::super::{Waiver, rows, statements as sql};
 use crate::plan::Plan;
-use crate::plan::mock::is_mock;
 use crate::record::{DeviceSeen, JobClaim, Record};
 
 /// Enters a run that is over, with all that follows from its record. A run with this id that is already there stays as it is; it
@@ -20,7 +19,7 @@ pub(super) fn run(
 ) -> Result<(), DatabaseError> {
     let unit = rows::unit(to, &record.run, &record.plan)?;
     to.one(sql::LOCK_UNIT, values![&unit], |_| Ok(()))?;
-    let counts = settles_job(to, record)?;
+    let counts = settles_job(to, record)? && !record.is_of_reference();
     let is_new = entered(to, record, hash, &unit, counts)?;
     let is_same = |theirs: String| theirs == hash;
     if is_new || to.first(sql::HASH_OF, values![&record.run.id], |row| row.get(0))?.is_some_and(is_same) {
@@ -39,7 +38,7 @@ pub(super) fn run(
     Ok(())
 }
 
-/// Enters the run of `unit`, and what is counted from it; it `counts` unless it is superseded. Returns whether it is new.
+/// Enters the run of `unit`, and what is counted from it; it `counts` unless it is superseded, or its unit checks shifts. Returns whether it is new.
 pub(in crate::store) fn entered(
     to: &mut dyn Database,
     record: &Record,
@@ -47,7 +46,6 @@ pub(in crate::store) fn entered(
     unit: &str,
     counts: bool,
 ) -> Result<bool, DatabaseError> {
-    let counts = counts && !is_mock(&record.run.serial);
     if enter(to, record, hash, unit, counts)? == 0 {
         return Ok(false);
     }

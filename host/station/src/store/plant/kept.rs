@@ -141,6 +141,7 @@ impl Rebuilt {
     /// # Errors
     /// [`StoreError`] when it contradicts the runs before.
     pub(crate) fn add_kept(&mut self, record: &Record, hash: &str, counts: bool) -> Result<(), StoreError> {
+        let counts = counts && !self.is_reference(record);
         self.change(|to| {
             let unit = rows::unit(to, &record.run, &record.plan)?;
             arrived::entered(to, record, hash, &unit, counts)?;

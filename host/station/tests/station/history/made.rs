@@ -11,11 +11,15 @@ use halfrow_station::record::{
 use halfrow_station::store::{Folder, Snapshot, Store, StoreError, Stored};
 use tempfile::TempDir;
 
+use crate::common::PLAN;
+
 /// 1 November 2026, midnight UTC.
 pub(crate) const BEGIN_MS: i64 = 1_793_491_200_000;
 pub(crate) const DAY_MS: i64 = 24 * HOUR_MS;
 pub(crate) const HOUR_MS: i64 = 3_600_000;
 pub(crate) const PRODUCT: &str = "CAM-T";
+/// A plan by which the units CAT00001, good, and CAT00002, bad, check a shift.
+pub(crate) const SHIFT: (&str, &str) = ("shift", "checked");
 
 /// How a run ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -208,6 +212,9 @@ pub(crate) fn id(ms: i64, number: u32) -> String {
 
 fn plan(Run { plan: (name, version), product, .. }: &Run) -> PlanRecord {
     let text = match (*name, *version) {
+        SHIFT => {
+            PLAN.replace("[tables]", "[shift]\ngood = \"CAT00001\"\nbad = \"CAT00002\"\nhours = 8\n[tables]")
+        }
         (name, version) if *product == PRODUCT => format!("schema = 1 # {name} {version}\n"),
         (name, version) => format!("schema = 1 # {product} {name} {version}\n"),
     };

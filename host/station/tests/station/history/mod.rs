@@ -22,6 +22,7 @@ mod put_back;
 mod read_only;
 pub(crate) mod released;
 pub(crate) mod served;
+pub(crate) mod shift_units;
 mod units;
 mod unnamed;
 mod untested;

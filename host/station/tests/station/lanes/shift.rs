@@ -145,7 +145,7 @@ fn the_mock_with_a_drawn_fault_may_be_what_is_known_to_be_bad() {
     );
     assert_eq!(station.query(&format!("SELECT sum(nth) {mocks}")), ["0"], "it is no judgement of a unit");
     assert_eq!(station.query(&format!("SELECT count(device) {mocks}")), ["0"], "it is bound to nothing");
-    assert_eq!(station.query("SELECT sum(runs) FROM day_count"), ["3"], "two good units and the product");
+    assert_eq!(station.query("SELECT sum(runs) FROM day_count"), ["1"], "the product alone");
     assert_eq!(station.query("SELECT count(*) FROM failure"), ["0"]);
     // Part of a day is counted by another statement than a whole day.
     let began: i64 = station.query("SELECT min(started_ms) FROM run")[0].parse().unwrap();
@@ -155,7 +155,7 @@ fn the_mock_with_a_drawn_fault_may_be_what_is_known_to_be_bad() {
     let call = call.args(["yield", "--json", "--from", &from, "--until", &until, "--data"]);
     let did: Did = call.arg(station.path("data")).output().unwrap().into();
     let yielded: Value = serde_json::from_str(&did.said).unwrap();
-    assert_eq!(yielded["lines"][0]["errors"]["of"], 3, "{yielded}");
+    assert_eq!(yielded["lines"][0]["errors"]["of"], 1, "{yielded}");
     station.assert_well();
 }
 
@@ -209,7 +209,9 @@ fn a_plan_for_hardware_judges_the_mock_by_its_frames_alone() {
     fs::write(station.path("plan.toml"), format!("{hardware}{limits}")).unwrap();
     let did = run_mock(&station);
     assert_eq!(did.code, Some(1), "{did:?}");
-    assert!(did.said.contains("HR:MOCK:1") && did.said.contains("counts as no production"), "{did:?}");
+    for said in ["HR:MOCK:1", "counts as no production", ", which is in no yield\n"] {
+        assert!(did.said.contains(said), "{said}: {did:?}");
+    }
     fs::write(station.path("plan.toml"), plan()).unwrap();
     let did = run_mock(&station);
     assert_eq!(did.code, Some(2), "{did:?}");

@@ -50,7 +50,7 @@ fn what_leaves_the_computer_goes_through_tls_and_to_the_plant_alone() {
     let url = format!("{near}?sslmode=require");
     let ca = place.path().join("ca.pem");
     let address = PlantAddress::new(&url, None, Some(&ca)).unwrap();
-    assert_eq!(Plant::prepare(&address).unwrap(), 7);
+    assert_eq!(Plant::prepare(&address).unwrap(), 8);
     let through = "SELECT DISTINCT ssl FROM pg_stat_ssl JOIN pg_stat_activity USING (pid) WHERE application_name = 'halfrow-station'";
     let plant = Plant::connect(&address).unwrap();
     assert_eq!(server.rows(through), [["t"]]);

@@ -16,6 +16,7 @@ mod refused;
 mod rights;
 pub(crate) mod sent;
 pub(crate) mod server;
+mod shift_units;
 mod silent;
 mod station_named;
 mod tables;

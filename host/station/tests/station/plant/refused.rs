@@ -126,7 +126,7 @@ fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
     let (folder, store) = history().parts();
     drop(store);
     let prepared = did(folder.path(), &server, &["plant", "prepare"]);
-    assert_eq!(prepared.said, format!("the plant {} has version 7\n", server.url()));
+    assert_eq!(prepared.said, format!("the plant {} has version 8\n", server.url()));
     let (_, all) = send(Made::at(folder), server.address());
     assert_eq!((all.sent, all.failed), (10, 0));
     server.client("plant").batch_execute("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
@@ -158,11 +158,11 @@ fn an_older_plant_is_copied_and_brought_up_to_date() {
     let server = Server::start();
     older(&server);
     let refused = Plant::connect(&server.address()).unwrap_err();
-    assert!(matches!(refused, StoreError::Older { found: 2, known: 7, .. }), "{refused:?}");
-    assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
+    assert!(matches!(refused, StoreError::Older { found: 2, known: 8, .. }), "{refused:?}");
+    assert_eq!(Plant::prepare(&server.address()).unwrap(), 8);
     assert_eq!(server.rows("SELECT serial FROM before_3.unit"), [["S1"]]);
     assert_eq!(server.rows("SELECT serial FROM unit"), [["S1"]]);
-    assert_eq!(server.rows("SELECT max(n) FROM schema_version"), [["7"]]);
+    assert_eq!(server.rows("SELECT max(n) FROM schema_version"), [["8"]]);
     Plant::connect(&server.address()).unwrap();
 }
 
@@ -171,13 +171,13 @@ fn an_older_plant_is_copied_and_brought_up_to_date() {
 fn a_plant_that_went_back_is_brought_up_to_date_beside_the_copy_of_the_first_time() {
     let server = Server::start();
     older(&server);
-    assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
+    assert_eq!(Plant::prepare(&server.address()).unwrap(), 8);
     for copy in ["before_3_2", "before_3_3"] {
         server.client("plant").batch_execute("DROP SCHEMA public CASCADE; CREATE SCHEMA public").unwrap();
         older(&server);
         let changed = format!("UPDATE unit SET serial = '{copy}'");
         server.client("plant").batch_execute(&changed).unwrap();
-        assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
+        assert_eq!(Plant::prepare(&server.address()).unwrap(), 8);
         assert_eq!(server.rows(&format!("SELECT serial FROM {copy}.unit")), [[copy]]);
     }
     assert_eq!(server.rows("SELECT serial FROM before_3.unit"), [["S1"]]);
@@ -197,7 +197,7 @@ fn a_plant_is_brought_up_to_date_after_what_an_earlier_program_has_under_way() {
     assert!(format!("{source:?}").contains("lock timeout"), "{source:?}");
     assert_eq!(server.rows("SELECT max(n) FROM schema_version"), [["2"]]);
     busy.batch_execute("COMMIT; ALTER DATABASE plant RESET lock_timeout").unwrap();
-    assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
+    assert_eq!(Plant::prepare(&server.address()).unwrap(), 8);
 }
 
 /// Also over a connection that it already had: what it does not know would be missing for ever.

@@ -1,0 +1,1 @@
+SELECT sha256, product, text FROM plan ORDER BY sha256;
