@@ -134,12 +134,11 @@ pub struct Yields {
 pub fn yields(of: &Snapshot, wanted: &Wanted, by: By) -> Result<Yields, StoreError> {
     let plans = plans(of)?;
     let mut cells = cells(of, wanted, &plans)?;
-    let again = again(of, &plans)?;
+    let again = again(of, wanted.period, &plans)?;
     let waived = waived(of, &plans)?;
     let mut flips = Vec::new();
     for unit in &again {
-        let is_wanted = wanted.is_wanted(&unit.cell) && wanted.period.holds(unit.first_ms);
-        if let Some(counts) = cells.get_mut(&unit.cell).filter(|_| is_wanted) {
+        if let Some(counts) = cells.get_mut(&unit.cell).filter(|_| wanted.is_wanted(&unit.cell)) {
             counts.adjust(unit.first_passed, unit.last_passed);
             counts.waived += u64::from(waived.contains_key(&unit.last));
             if unit.is_flip() {
@@ -291,9 +290,14 @@ impl Again {
     }
 }
 
-/// The units that were judged more than once.
-fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>, StoreError> {
-    let rows = of.rows("to tell what was judged again", statements::RETESTS, &[], |row| {
+/// The units that were judged more than once, for the first time in this period.
+fn again(
+    of: &Snapshot,
+    Period { from_ms, until_ms }: Period,
+    plans: &BTreeMap<String, PlanName>,
+) -> Result<Vec<Again>, StoreError> {
+    let period = values![from_ms, until_ms];
+    let rows = of.rows("to tell what was judged again", statements::RETESTS, period, |row| {
         let (hash, first_ms): (String, i64) = (row.get(1)?, row.get(6)?);
         let plan = plans.get(&hash).cloned().ok_or(DatabaseError::Dangling { what: "a plan" })?;
         let cell = DayCell { plan, station: row.get(2)?, lane: row.get(3)?, day: first_ms / DAY_MS };
