@@ -5,7 +5,7 @@ use std::error::Error;
 use halfrow_pipe::meant;
 
 use crate::kinds::{self, KINDS, Kind};
-use crate::{Class, RecordingError, SerialError, Target, TcpError, UsbError};
+use crate::{Class, RecordingError, SerialError, Target, TcpError, TraceError, UsbError};
 
 /// A target that leads nowhere.
 #[derive(Debug, thiserror::Error)]
@@ -84,10 +84,9 @@ pub enum OpenError {
          `apt-get install verilator g++`, and build with Cargo's feature `sim`"
     )]
     NoSimulation(String),
-    /// The waveform cannot be written.
-    #[cfg(feature = "sim")]
+    /// The waveform cannot be written; only with Cargo's feature `sim`.
     #[error(transparent)]
-    Trace(#[from] halfrow_sim::TraceError),
+    Trace(#[from] TraceError),
     /// The system does not let the board's device or connection be used, or not in the way that a link needs.
     #[error("the system does not let `{target}` be used; check that it is there and that you may use it")]
     System {
@@ -159,9 +158,8 @@ impl OpenError {
             | Self::Pace { .. }
             | Self::UnknownFront(_)
             | Self::NoSimulation(_)
+            | Self::Trace(_)
             | Self::Recording(_) => Class::Call,
-            #[cfg(feature = "sim")]
-            Self::Trace(_) => Class::Call,
         }
     }
 }

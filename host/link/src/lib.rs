@@ -1,5 +1,8 @@
 //! A link: a pipe that carries bytes to a board and back, with deadlines. [`open`] opens the one that a [`Target`] names, and
 //! [`discovery`] finds what could be a board.
+//!
+//! Cargo's feature `sim` adds the targets `sim`, `sim:uart` and `sim:fifo`, which are the board's Verilog under simulation. It
+//! needs Verilator and a C++ compiler.
 
 #![warn(missing_debug_implementations)]
 
@@ -55,6 +58,10 @@ pub use halfrow_sim::TraceError;
 
 /// The bytes a second that a line of this rate carries: a byte is a start bit, eight data bits and a stop bit.
 pub fn bytes_per_second(baud: impl Into<f64>) -> f64 {
+/// Why the waveform of a simulated board is not written. Cargo unites features over a build, so the errors have the same variants
+/// without the feature `sim`.
+#[cfg(not(feature = "sim"))]
+pub use std::convert::Infallible as TraceError;
     baud.into() / 10.0
 }
 
@@ -130,8 +137,7 @@ pub enum LinkError {
         #[source]
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// The waveform of the simulated board cannot be written on.
-    #[cfg(feature = "sim")]
+    /// The waveform of the simulated board cannot be written on; only with Cargo's feature `sim`.
     #[error(transparent)]
     Trace(#[from] TraceError),
     /// The board's device is gone: it was unplugged or lost power.

@@ -92,9 +92,8 @@ impl BoardError {
 fn of_link(error: &LinkError) -> Shown {
     match error {
         LinkError::Closed { .. } | LinkError::Failed { .. } | LinkError::Unplugged { .. } => Shown::Outage,
-        #[cfg(feature = "sim")]
-        LinkError::Trace(_) => Shown::Unreachable,
-        LinkError::Stopped { .. }
+        LinkError::Trace(_)
+        | LinkError::Stopped { .. }
         | LinkError::InUse { .. }
         | LinkError::NoBoardThere { .. }
         | LinkError::OtherConversation { .. }

@@ -5,18 +5,15 @@ use halfrow_protocol::message::{Malformed, UnknownDatapath};
 use super::codes;
 use crate::board::BoardError;
 use crate::coverage::FaultsError;
-use crate::link::{LinkError, OpenError, RecordingError, SerialError, TcpError, UsbError, UsbFailure};
+use crate::link::{
+    LinkError, OpenError, RecordingError, SerialError, TcpError, TraceError, UsbError, UsbFailure,
+};
 use crate::link_test::LinkTestError;
 use crate::run::{
     CannotJudge, GoldenError, Misfit, NoThread, NotAllJudged, PrepareError, RestoreError, TooManyFrames,
     WithinError,
 };
 use crate::target::TargetError;
-
-#[cfg(feature = "sim")]
-use crate::link::TraceError;
-#[cfg(not(feature = "sim"))]
-use std::convert::Infallible as TraceError;
 
 codes! {
     BoardError {
@@ -54,7 +51,6 @@ codes! {
         OtherConversation [byte] => "recording-of-other-run",
         RecordingEnds [link, at] => "recording-ends",
         Record => "recording-not-written",
-        #[cfg(feature = "sim")]
         = Trace,
     }
     OpenError {
@@ -72,7 +68,6 @@ codes! {
         = Tcp,
         = Usb,
         = Recording,
-        #[cfg(feature = "sim")]
         = Trace,
     }
     TargetError {

@@ -95,7 +95,7 @@ macro_rules! codes {
     (
         $( $error:ident {
             $( $variant:ident $( [ $($field:ident),+ ] )? $( ( $name:ident ) )? => $code:literal, )*
-            $( $( #[$attribute:meta] )* = $inner:ident, )*
+            $( = $inner:ident, )*
         } )*
         $( ; $whole:ident $( [ $($member:ident),+ ] )? => $one:literal )*
     ) => {
@@ -129,7 +129,7 @@ macro_rules! codes {
                         $( parameters.insert(stringify!($name).to_owned(), $name.parameter()); )?
                         Some($crate::result::codes::Coded { code: $code.to_owned(), parameters })
                     } )*
-                    $( $( #[$attribute] )* $error::$inner(inner) => {
+                    $( $error::$inner(inner) => {
                         lookup(inner).or_else(|| $crate::result::codes::lookup(inner))
                     } )*
                 };
