@@ -34,6 +34,9 @@ mod wire;
 
 use std::time::Duration;
 
+pub use halfrow_mock as mock;
+pub use halfrow_pipe as pipe;
+
 pub use candidate::{Candidate, Reopener};
 pub use class::Class;
 pub use closed_link::ClosedLink;

@@ -29,7 +29,7 @@ use std::time::Duration;
 
 use halfrow_model::{Geometry, GridShape};
 use halfrow_protocol::message::{Configuration, Hello, Reply, Request, Reset, ResetLevel};
-use halfrow_protocol::{Kind, Packet, VERSION};
+use halfrow_protocol::{Packet, VERSION};
 
 use answer::take_reply;
 use conversation::Conversation;
@@ -57,8 +57,10 @@ pub use stop::Stop;
 pub(crate) use tables::{ReadBack, TablePort};
 pub use tally::Tally;
 
+pub use halfrow_protocol::Kind;
 pub use halfrow_protocol::message::{
-    Bank, BoardNature, Bursts, Capabilities, Datapath, RefusalCode, Status, Table, UnknownDatapath, Welcome,
+    Bank, BoardNature, Bursts, Capabilities, ClockSource, Datapath, Depths, Grids, Malformed, Refusal,
+    RefusalCode, RowPlace, Status, Table, UnknownDatapath, Welcome,
 };
 
 /// When the core is fed samples. The default is as soon as the board can take them.
