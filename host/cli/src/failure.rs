@@ -4,6 +4,7 @@ use crate::commands::codes;
 use crate::exit::Exit;
 use crate::{flags, json};
 use halfrow::board::{BoardError, OpenFailed};
+use halfrow::correction::CorrectionError;
 use halfrow::link::OpenError;
 use halfrow::optics::OpticsError;
 use halfrow::result::{Document, Problem, Schema};
@@ -100,6 +101,16 @@ impl From<Misfit> for Failure {
         };
         let failure = if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) };
         Self { option, ..failure }
+    }
+}
+
+impl From<CorrectionError> for Failure {
+    fn from(error: CorrectionError) -> Self {
+        match error {
+            CorrectionError::Misfit(misfit) => misfit.into(),
+            CorrectionError::Frame(unfit) => Self::call(unfit),
+            CorrectionError::Board(error) => error.into(),
+        }
     }
 }
 

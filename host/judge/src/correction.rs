@@ -1,14 +1,30 @@
 //! Frames corrected by a board, unjudged: upload, stream, collect.
 
 use std::collections::VecDeque;
+use std::num::NonZeroU8;
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
 
-use halfrow_model::{Frame, Kernel, TableSet};
+use halfrow_model::{CorrectError, Frame, Kernel, TableSet};
 
 use crate::board::{Board, BoardError, NumberedFrame, ReturnedRow, RowTiming, RowTraffic};
 use crate::progress::Progress;
+use crate::run::{Misfit, check_fit};
 use crate::tables::datapath_of;
+
+/// Why a board did not correct all frames.
+#[derive(Debug, thiserror::Error)]
+pub enum CorrectionError {
+    /// The board cannot take the tables or the kernel.
+    #[error(transparent)]
+    Misfit(#[from] Misfit),
+    /// A frame has another size or depth than the tables are for.
+    #[error(transparent)]
+    Frame(#[from] CorrectError),
+    /// The board refuses, does not answer, or does not return a row.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+}
 
 /// What a board corrects frames with.
 #[derive(Clone, Copy, Debug)]
@@ -17,8 +33,8 @@ pub struct Correction<'a> {
     pub tables: &'a TableSet,
     /// The kernel.
     pub kernel: &'a Kernel,
-    /// Their generation, 1 to 255.
-    pub generation: u8,
+    /// Their generation.
+    pub generation: NonZeroU8,
     /// The number of the first frame on the wire, higher than that of any frame streamed in this session before.
     pub first_frame: u16,
 }
@@ -29,19 +45,23 @@ impl Correction<'_> {
     /// broken board can exceed the depth. Returns the least and the most pixel clocks that a row's first and last samples took.
     ///
     /// # Errors
-    /// [`BoardError`] when the board refuses, does not answer, or does not return a row.
+    /// [`CorrectionError::Misfit`] before anything is sent, as [`check_fit`] finds it; [`CorrectionError::Frame`] for the first
+    /// input that the tables are not for, once those before it were taken; [`CorrectionError::Board`].
     pub fn run(
         &self,
         board: &mut Board,
         inputs: impl Iterator<Item = Arc<Frame>>,
         take: impl FnMut(Vec<u16>) -> ControlFlow<()>,
         progress: &dyn Progress,
-    ) -> Result<RangeInclusive<u16>, BoardError> {
+    ) -> Result<RangeInclusive<u16>, CorrectionError> {
+        check_fit(self.tables, self.kernel, board.capabilities())?;
         board.start_afresh()?;
         board.configure(self.tables.geometry(), RowTiming::default(), datapath_of(self.tables))?;
         board.upload(self.tables, self.kernel)?;
-        board.commit(self.tables, self.kernel, self.first_frame, self.generation)?;
+        board.commit(self.tables, self.kernel, self.first_frame, self.generation.get())?;
         let mut collect = Collect {
+            tables: self.tables,
+            unfit: None,
             next: self.first_frame,
             inputs,
             under_way: VecDeque::new(),
@@ -50,7 +70,10 @@ impl Correction<'_> {
             progress,
         };
         board.stream(&mut collect)?;
-        Ok(collect.latency.unwrap_or(0..=0))
+        match collect.unfit {
+            Some(unfit) if collect.under_way.is_empty() => Err(unfit.into()),
+            _ => Ok(collect.latency.unwrap_or(0..=0)),
+        }
     }
 }
 
@@ -63,6 +86,9 @@ struct UnderWay {
 
 /// Collects returned rows until a frame is complete.
 struct Collect<'a, I, T> {
+    tables: &'a TableSet,
+    /// Why the last frame of `inputs` was not streamed.
+    unfit: Option<CorrectError>,
     /// The number of the next frame.
     next: u16,
     inputs: I,
@@ -79,6 +105,10 @@ where
 {
     fn next_frame(&mut self) -> Option<NumberedFrame> {
         let (number, frame) = (self.next, self.inputs.next()?);
+        if let Err(unfit) = self.tables.check_frame(&frame) {
+            self.unfit = Some(unfit);
+            return None;
+        }
         self.next = number.wrapping_add(1);
         let samples = vec![0; frame.samples().len()];
         self.under_way.push_back(UnderWay { number, samples, rows_left: frame.height() });

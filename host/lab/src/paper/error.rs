@@ -8,6 +8,7 @@ use halfrow_model::{
 };
 
 use halfrow::board::BoardError;
+use halfrow::correction::CorrectionError;
 use halfrow::run::Misfit;
 
 /// An item that could not be made.
@@ -57,4 +58,14 @@ pub enum PaperError {
     /// The paper's row factors were refused.
     #[error("the paper's row factors are refused; this is a fault of halfrow, so report it")]
     Tables(#[from] TableError),
+}
+
+impl From<CorrectionError> for PaperError {
+    fn from(error: CorrectionError) -> Self {
+        match error {
+            CorrectionError::Misfit(misfit) => misfit.into(),
+            CorrectionError::Frame(unfit) => unfit.into(),
+            CorrectionError::Board(error) => error.into(),
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! A board on which the paper's claims are tried.
 
+use std::num::NonZeroU8;
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
 
@@ -72,9 +73,9 @@ impl TestedBoard {
         inputs: &[Arc<Frame>],
         progress: &dyn Progress,
     ) -> Result<Corrected, PaperError> {
-        self.fits(tables, kernel)?;
-        self.generation += 1;
-        let correction = Correction { tables, kernel, generation: self.generation, first_frame: self.frames };
+        let generation = NonZeroU8::MIN.saturating_add(self.generation);
+        self.generation = generation.get();
+        let correction = Correction { tables, kernel, generation, first_frame: self.frames };
         let mut samples = Vec::with_capacity(inputs.len());
         let take = |frame| {
             samples.push(frame);

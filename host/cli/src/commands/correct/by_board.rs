@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::num::NonZeroU8;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,7 +17,7 @@ use halfrow::board::{Board, Stop};
 use halfrow::correction::Correction;
 use halfrow::frames::{self, Decoded};
 use halfrow::progress::Progress;
-use halfrow::run::{self, JUDGED};
+use halfrow::run;
 use halfrow::target::BoardKind;
 
 /// How often to look whether to stop while an input is awaited.
@@ -51,7 +52,7 @@ impl Job<'_> {
         let correction = Correction {
             tables: &self.chosen.tables,
             kernel: &self.chosen.kernel,
-            generation: JUDGED,
+            generation: NonZeroU8::MIN,
             first_frame: 0,
         };
         let (mut unread, mut unwritten) = (None, None);

@@ -4,6 +4,7 @@ use halfrow_protocol::message::{Malformed, UnknownDatapath};
 
 use super::codes;
 use crate::board::BoardError;
+use crate::correction::CorrectionError;
 use crate::coverage::FaultsError;
 use crate::link::{
     LinkError, OpenError, RecordingError, SerialError, TcpError, TraceError, UsbError, UsbFailure,
@@ -161,6 +162,11 @@ codes! {
         Frame [interpolant, expected, found] => "golden-frame-wrong",
         Row [interpolant, column, expected, found] => "golden-row-wrong",
         Unseen [interpolant] => "golden-error-unseen",
+    CorrectionError {
+        = Misfit,
+        = Frame,
+        = Board,
+    }
         = Correct,
     }
     ;
