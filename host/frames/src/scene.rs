@@ -9,7 +9,7 @@ use super::parallel;
 pub struct Scene {
     /// Width, height, depth and the column of the optical centre.
     pub geometry: Geometry,
-    /// The row of the optical centre; the middle of the frame when not given.
+    /// The row of the optical centre, counted from 0, which may be any finite number; the middle of the frame when not given.
     pub centre_y: Option<f64>,
     /// The arrangement of the colours.
     pub phase: Phase,

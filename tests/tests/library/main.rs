@@ -8,6 +8,7 @@ mod evidence;
 mod logs;
 mod outside;
 mod parts;
+mod refused;
 mod tree;
 mod within;
 mod words;

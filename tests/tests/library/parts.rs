@@ -215,21 +215,6 @@ fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }
 
-/// A plan of no frame, of which only frames are to be judged.
-#[test]
-fn a_run_in_which_nothing_came_back_is_no_pass() {
-    let _alone = crate::RUNS.lock();
-    let plan = Plan { frames: Vec::new(), at_speed: AtSpeed::Off, ..plan(Some(Selection::least())) };
-    let report = judge_by_plan(&plan, open("mock"));
-    assert_eq!(
-        (report.verdict(), report.cause),
-        (Verdict::Error, Cause::NothingJudged),
-        "{}",
-        report.headline()
-    );
-    assert_eq!(report.finding, Finding::NothingJudged {});
-}
-
 /// Also where it is behind a link to the outside, and says itself what it is.
 #[test]
 fn a_board_that_says_that_it_is_none_is_no_hardware() {

@@ -57,7 +57,7 @@ pub use plan::prices::{Prices, Rates, usual_capabilities};
 pub use plan::variations::{Build, Vary};
 pub use plan::within::WithinError;
 pub use plan::{
-    AtSpeed, DECOY, FrameSource, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing, TooManyFrames,
+    AtSpeed, DECOY, FrameSource, JUDGED, MOST_FRAMES, Plan, PlanLengthError, ScheduledFrame, Segment, Timing,
 };
 pub use recorded::{RecordedRun, RestoreError};
 pub(crate) use threads::NoThread;
@@ -79,8 +79,8 @@ pub struct Provenance {
 /// that those of two runs on two threads can be told apart.
 ///
 /// # Errors
-/// [`Misfit`] when the board cannot take what `plan` uploads, or a frame does not fit the plan's tables: then there is no
-/// verdict and no report. Whatever else goes wrong is in the report.
+/// [`Misfit`] when the plan has no frames or too many, a frame cannot be made or does not fit its tables, or the board cannot take
+/// what it uploads: then there is no verdict and no report. Whatever else goes wrong is in the report.
 pub fn verify(
     plan: &Plan,
     candidate: Candidate,
@@ -114,7 +114,6 @@ fn run_to_report(
     options: &RunOptions,
     progress: &dyn Progress,
 ) -> Result<Finished, Misfit> {
-    plan.check_length()?;
     check_frames(plan)?;
     let begun = Begun::now();
     let Candidate { target, kind, link, reopen } = candidate;

@@ -11,7 +11,7 @@ use crate::link::{
 };
 use crate::link_test::LinkTestError;
 use crate::run::{
-    CannotJudge, GoldenError, Misfit, NoThread, NotAllJudged, PrepareError, RestoreError, TooManyFrames,
+    CannotJudge, GoldenError, Misfit, NoThread, NotAllJudged, PlanLengthError, PrepareError, RestoreError,
     WithinError,
 };
 use crate::target::TargetError;
@@ -143,9 +143,14 @@ codes! {
         GridPitch [pitch, taken] => "grid-of-other-pitch",
         Taps => "kernel-has-too-many-taps",
         Frame [name] => "frame-unfit",
+        CentreRow => "centre-row-not-finite",
         = Ring,
-        = TooManyFrames,
+        = Length,
         = Within,
+    }
+    PlanLengthError {
+        NoFrames => "plan-without-frames",
+        TooManyFrames [frames] => "too-many-frames",
     }
     WithinError {
         TooFew [seconds, least] => "seconds-too-few-for-verdict",
@@ -157,24 +162,22 @@ codes! {
         Form [what] => "fault-table-unreadable",
         Fault [fault, what] => "fault-table-wrong",
     }
-    GoldenError {
-        Unmade [what] => "golden-values-not-made",
-        Frame [interpolant, expected, found] => "golden-frame-wrong",
-        Row [interpolant, column, expected, found] => "golden-row-wrong",
-        Unseen [interpolant] => "golden-error-unseen",
     CorrectionError {
         = Misfit,
         = Frame,
         = Board,
     }
+    GoldenError {
+        Unmade [what] => "golden-values-not-made",
+        Frame [interpolant, expected, found] => "golden-frame-wrong",
+        Row [interpolant, column, expected, found] => "golden-row-wrong",
+        Unseen [interpolant] => "golden-error-unseen",
         = Correct,
     }
     ;
     CannotJudge => "computer-cannot-judge"
     ;
     NotAllJudged [planned, judged] => "samples-not-judged"
-    ;
-    TooManyFrames [frames] => "too-many-frames"
     ;
     NoThread => "run-thread-missing"
     ;

@@ -190,3 +190,20 @@ fn host_name() -> String {
     std::fs::read_to_string("/proc/sys/kernel/hostname")
         .map_or_else(|_| "unknown".to_owned(), |name| name.trim().to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::sessions::Sessions;
+    use crate::target::BoardKind;
+
+    /// However it came about, since no plan that is let through asks for it.
+    #[test]
+    fn a_run_in_which_nothing_came_back_is_no_pass() {
+        let findings = Findings::new("mock".to_owned(), BoardKind::Mock);
+        let link = Sessions::new(&RunOptions::default(), "mock".to_owned(), None).report();
+        let Ending { cause, finding, .. } =
+            ending(Ok(Vec::new()), &findings.board, &link, &Observations::default());
+        assert_eq!((cause, finding), (Cause::NothingJudged, Finding::NothingJudged {}));
+    }
+}

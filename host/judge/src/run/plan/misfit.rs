@@ -4,7 +4,7 @@ use halfrow_model::{BitDepth, CorrectError, GridShape, Kernel, TableError, Table
 use halfrow_protocol::message::{BoardNature, UnknownDatapath};
 
 use super::within::WithinError;
-use super::{FrameSource, Plan, TooManyFrames};
+use super::{FrameSource, Plan, PlanLengthError};
 use crate::board::{Capabilities, grids};
 
 /// Why a board cannot have tables, a kernel or frames: the call does not fit the board, or the board not this program, so
@@ -82,9 +82,14 @@ pub enum Misfit {
         /// In what.
         source: CorrectError,
     },
-    /// More frames than any run can have.
+    /// The optical centre of built-in frames is at no row.
+    #[error(
+        "the optical centre of built-in frames is at row {0}; give a finite number, or none for the middle of the frame"
+    )]
+    CentreRow(f64),
+    /// No frame, or more than any run can have.
     #[error(transparent)]
-    TooManyFrames(#[from] TooManyFrames),
+    Length(#[from] PlanLengthError),
     /// The time that there is does not suffice.
     #[error(transparent)]
     Within(#[from] WithinError),
@@ -98,11 +103,16 @@ impl Misfit {
     }
 }
 
-/// Checks that the tables of `plan` fit all frames that it was given.
+/// Checks whatever of `plan` no board is needed for: that it has frames, that these can be numbered and made, and that its tables
+/// fit those that it was given.
 ///
 /// # Errors
-/// [`Misfit::Frame`] for the first frame that they do not fit.
+/// [`Misfit::Length`], [`Misfit::CentreRow`], or [`Misfit::Frame`] for the first frame that the tables do not fit.
 pub(crate) fn check_frames(plan: &Plan) -> Result<(), Misfit> {
+    plan.check_length()?;
+    if let Some(row) = plan.centre_y.filter(|row| !row.is_finite()) {
+        return Err(Misfit::CentreRow(row));
+    }
     plan.frames.iter().try_for_each(|own| match own {
         FrameSource::Builtin(_) => Ok(()),
         FrameSource::File { frame, .. } => {

@@ -30,14 +30,21 @@ pub(crate) const SENSOR_BLANKING: u16 = 900;
 /// noise of its own.
 pub const MOST_FRAMES: usize = (1 << 16) - 7;
 
-/// The plan has more frames than one run can number.
+/// The plan has no frames, or more than one run can number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{frames} frames are more than the {MOST_FRAMES} that a run can number; name fewer, or repeat them less often"
-)]
-pub struct TooManyFrames {
-    /// Frames, all repetitions counted.
-    pub frames: usize,
+pub enum PlanLengthError {
+    /// The plan names no frame, or streams each zero times. The frames that a run adds by itself would pass for those that were
+    /// meant.
+    #[error("the plan has no frame to stream; name at least one, and stream each at least once")]
+    NoFrames,
+    /// The plan has more frames than frame numbers, which have 16 bits.
+    #[error(
+        "{frames} frames are more than the {MOST_FRAMES} that a run can number; name fewer, or repeat them less often"
+    )]
+    TooManyFrames {
+        /// Frames, all repetitions counted.
+        frames: usize,
+    },
 }
 
 /// Where a frame comes from.
@@ -125,13 +132,14 @@ pub struct Plan {
     pub rows_outside_circle: Option<usize>,
     /// The lens that built-in frames are rendered through.
     pub lens: Equidistant,
-    /// The row of the optical centre of built-in frames; the middle when not given.
+    /// The row of the optical centre of built-in frames, counted from 0, which may be any finite number; the middle when not
+    /// given.
     pub centre_y: Option<f64>,
     /// The Bayer phase of built-in frames.
     pub phase: Phase,
-    /// The frames to stream.
+    /// The frames to stream, at least one; all repetitions counted, at most [`MOST_FRAMES`].
     pub frames: Vec<FrameSource>,
-    /// How often each frame is streamed.
+    /// How often each frame is streamed, at least once.
     pub repeat: u32,
     /// Which settings of `tables` are varied, in additional frames of noise.
     pub vary: Vary,
@@ -245,13 +253,16 @@ impl Plan {
         (depth != own.depth()).then(|| Variation::Depth { bits: depth.bits() })
     }
 
-    /// Checks that all frames can be numbered.
+    /// Checks that there are frames, and that all of them can be numbered.
     ///
     /// # Errors
-    /// [`TooManyFrames`] when they cannot.
-    pub fn check_length(&self) -> Result<(), TooManyFrames> {
-        let frames = self.frames.len().saturating_mul(self.repeat as usize);
-        if frames <= MOST_FRAMES { Ok(()) } else { Err(TooManyFrames { frames }) }
+    /// [`PlanLengthError`] when there are none, or too many.
+    pub fn check_length(&self) -> Result<(), PlanLengthError> {
+        match self.frames.len().saturating_mul(self.repeat as usize) {
+            0 => Err(PlanLengthError::NoFrames),
+            1..=MOST_FRAMES => Ok(()),
+            frames => Err(PlanLengthError::TooManyFrames { frames }),
+        }
     }
 
     /// The tables that a run uploads to a board of this build, in order, each with its geometry. The first are a decoy,

@@ -58,7 +58,7 @@ const OF_JUDGE: [&str; 16] = [
     "GoldenError",
     "CannotJudge",
     "NotAllJudged",
-    "TooManyFrames",
+    "PlanLengthError",
     "NoThread",
     "UsbFailure",
 ];
