@@ -72,7 +72,7 @@ impl fmt::Display for Interpolant {
     }
 }
 
-/// A name of no interpolant.
+/// No interpolant has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no interpolant; use nearest, linear, keys or hermite")]
 pub struct UnknownInterpolant(String);

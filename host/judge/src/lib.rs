@@ -12,6 +12,11 @@
 //! frames that it keeps have a budget, [`RunOptions::evidence_bytes`], so its memory does not grow with the number of frames,
 //! except for some hundred bytes each in the report.
 //!
+//! Errors are typed, and end with what to do. [`Problem::of`](result::Problem::of) makes data of any of them, with a stable code
+//! to tell them apart by, which `docs/CODES.md` lists.
+//!
+//! Cargo's feature `sim` adds the targets of the simulated board, as in [`link`].
+//!
 //! This library prints nothing, knows no command-line options, and ends no process: its caller does. It knows which [`exit`] code
 //! belongs to a result, since every document contains it. It logs to `tracing`; every line of a run is in a span `run` with the
 //! target as `board`.

@@ -3,6 +3,7 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
+mod coded;
 mod corrected;
 mod evidence;
 mod logs;

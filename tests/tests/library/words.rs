@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 const LIBRARIES: [&str; 4] = ["host/files/src", "host/frames/src", "host/link/src", "host/judge/src"];
 
-fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(crate) fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {

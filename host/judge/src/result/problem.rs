@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 use super::codes::{self, Coded};
 use super::{Defect, Finding, wording};
+use crate::run::Lack;
 use crate::words::sentence;
 
 /// Parameters, by name.
@@ -52,7 +53,7 @@ impl Problem {
     #[must_use]
     pub fn by(error: &(dyn Error + 'static), lookup: codes::Lookup) -> Self {
         let mut chain: Vec<_> = std::iter::successors(Some(error), |&error| error.source())
-            .map(|error| one(error, lookup))
+            .flat_map(|error| told(error).map_or_else(|| vec![one(error, lookup)], Problem::chain))
             .collect();
         if let Some(known) = chain.iter().find(|problem| problem.code != codes::FOREIGN).cloned()
             && let Some(first) = chain.first_mut().filter(|first| first.code == codes::FOREIGN)
@@ -91,6 +92,12 @@ impl Problem {
         let causes = self.causes.iter().map(|cause| cause.message.as_str());
         std::iter::once(self.message.as_str()).chain(causes).collect::<Vec<_>>().join(": ")
     }
+}
+
+/// The problem that an error is, or has in it.
+fn told(error: &(dyn Error + 'static)) -> Option<Problem> {
+    let lack = || error.downcast_ref().map(|Lack { what, .. }| &**what);
+    error.downcast_ref().or_else(lack).cloned()
 }
 
 fn one(error: &(dyn Error + 'static), lookup: codes::Lookup) -> Problem {

@@ -2,7 +2,7 @@
 
 use halfrow_model::{
     CameraError, CorrectError, FrameError, GeometryError, GridRoomError, GridShapeError, KernelError,
-    LensError, RowFactorError, TableError, UnavailablePath, UnknownPath, UnknownPhase,
+    LensError, RowFactorError, TableError, UnavailablePath, UnknownInterpolant, UnknownPath, UnknownPhase,
 };
 
 use super::codes;
@@ -200,6 +200,8 @@ codes! {
     UnknownTableFormat [path] => "tables-format-unknown"
     ;
     UnknownKernel => "kernel-unknown"
+    ;
+    UnknownInterpolant => "interpolant-unknown"
     ;
     DamagedKernel => "kernel-damaged"
     ;

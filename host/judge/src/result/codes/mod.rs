@@ -9,6 +9,8 @@ use std::error::Error;
 use std::io;
 
 use super::{Parameters, Problem};
+use crate::board::OpenFailed;
+use crate::run::Lack;
 
 pub use parameter::Parameter;
 
@@ -52,6 +54,12 @@ pub const LISTS: [&[CodeList]; 2] = [links::LISTS, files::LISTS];
 pub fn lookup(error: &(dyn Error + 'static)) -> Option<Coded> {
     if let Some(Problem { code, parameters, .. }) = error.downcast_ref() {
         return Some(Coded { code: code.clone(), parameters: parameters.clone() });
+    }
+    if let Some(Lack { what, .. }) = error.downcast_ref() {
+        return lookup(&**what);
+    }
+    if let Some(OpenFailed { error, .. }) = error.downcast_ref() {
+        return lookup(error);
     }
     links::lookup(error).or_else(|| files::lookup(error)).or_else(|| {
         let error = error.downcast_ref::<io::Error>()?;
