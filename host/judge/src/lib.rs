@@ -27,6 +27,12 @@
 #![doc = include_str!("../examples/two_boards.rs")]
 //! ```
 //!
+//! # A link of one's own
+//!
+//! ```
+#![doc = include_str!("../examples/own_link.rs")]
+//! ```
+//!
 //! # Inside
 //!
 //! Only [`link`] touches a device, only [`board`] sends and receives, and [`run`] alone knows the order of things; its rules

@@ -58,13 +58,13 @@ pub use wire::WireLink;
 
 #[cfg(feature = "sim")]
 pub use halfrow_sim::TraceError;
-
-/// The bytes a second that a line of this rate carries: a byte is a start bit, eight data bits and a stop bit.
-pub fn bytes_per_second(baud: impl Into<f64>) -> f64 {
 /// Why the waveform of a simulated board is not written. Cargo unites features over a build, so the errors have the same variants
 /// without the feature `sim`.
 #[cfg(not(feature = "sim"))]
 pub use std::convert::Infallible as TraceError;
+
+/// The bytes a second that a line of this rate carries: a byte is a start bit, eight data bits and a stop bit.
+pub fn bytes_per_second(baud: impl Into<f64>) -> f64 {
     baud.into() / 10.0
 }
 
@@ -76,11 +76,13 @@ pub(crate) const HEED: Duration = Duration::from_millis(250);
 ///
 /// Both directions move in one call, so a host cannot deadlock with a board that waits to be read: what the board sends is taken
 /// while the host sends.
+///
+/// A program can bring a link of its own in a [`Candidate`]; the front page of `halfrow` has an example.
 pub trait Link: Send {
-    /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes taken.
-    /// Returns as soon as a byte has moved in either direction. Without one it returns when `wait` has passed, or earlier: after
-    /// a signal, or so that the caller can check whether it was asked to stop. So 0 does not mean that `wait` is over; see
-    /// [`Self::now`]. It may also take some milliseconds longer than `wait`.
+    /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes taken, at
+    /// most `outgoing.len()`. Returns as soon as a byte has moved in either direction. Without one it returns when `wait` has
+    /// passed, or earlier: after a signal, or so that the caller can check whether it was asked to stop. So 0 does not mean that
+    /// `wait` is over; see [`Self::now`]. It may also take some milliseconds longer than `wait`.
     ///
     /// # Errors
     /// [`LinkError`] when the pipe is broken. Bytes that moved before were returned by earlier calls.

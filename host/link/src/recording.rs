@@ -215,7 +215,8 @@ impl Link for Recorder {
         wait: Duration,
     ) -> Result<usize, LinkError> {
         let before = incoming.len();
-        let taken = self.link.exchange(outgoing, incoming, wait)?;
+        // A link of the caller's own may count what it adds.
+        let taken = self.link.exchange(outgoing, incoming, wait)?.min(outgoing.len());
         let seen = self.link.line_errors();
         let line_errors = (seen != std::mem::replace(&mut self.line_errors, seen)).then_some(seen);
         let (sent, received) = (&outgoing[..taken], &incoming[before..]);

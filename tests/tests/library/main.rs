@@ -8,6 +8,7 @@ mod corrected;
 mod evidence;
 mod logs;
 mod outside;
+mod own_link;
 mod parts;
 mod refused;
 mod tree;

@@ -279,7 +279,8 @@ impl Conversation {
         let counts = if is_idle { wait } else { wait.min(BRIEF) };
         self.waited += (self.since(begun) + mem::take(&mut self.spent)).min(counts);
         self.tally.line_errors = self.link.line_errors();
-        let taken = moved?;
+        // A link of the caller's own may count what it adds.
+        let taken = moved?.min(self.outgoing.len());
         self.outgoing.drain(..taken);
         self.tally.bytes_out += taken as u64;
         self.tally.bytes_in += self.incoming.len() as u64;
