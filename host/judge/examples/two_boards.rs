@@ -1,7 +1,7 @@
 //! Judges two mock boards at once, one of them broken, and keeps the results in a place of its own.
 
 use std::error::Error;
-use std::sync::mpsc;
+use std::sync::mpsc::{self, Sender};
 use std::thread;
 
 use halfrow::frames::Builtin;
@@ -22,9 +22,7 @@ fn main() -> Result<(), Failure> {
         .frames([FrameSource::Builtin(Builtin::Street)]);
     let results = tempfile::tempdir()?;
 
-    let (sender, events) = mpsc::channel();
-    let judge = |name: &'static str, target: &str| -> Result<Verdict, Failure> {
-        let watch = sender.clone();
+    let judge = |name: &'static str, target: &str, watch: Sender<_>| -> Result<Verdict, Failure> {
         let told = move |event| _ = watch.send((name, event));
         let board = link::open(&target.parse()?)?;
         let folder = ReportFolder::prepare(&results.path().join(name), false)?;
@@ -34,16 +32,16 @@ fn main() -> Result<(), Failure> {
         Ok(finished.report.verdict())
     };
     let verdicts = thread::scope(|scope| {
-        let sound = scope.spawn(|| judge("left", "mock"));
-        let broken = scope.spawn(|| judge("right", "mock,fault=stuck-data"));
-        let mut running = 2;
-        while running > 0 {
-            match events.recv() {
-                Ok((name, Event::Step(step))) => println!("{name}: {step}"),
-                Ok((name, Event::Frame(frame))) => println!("{name}: {frame}"),
-                Ok((_, Event::Done)) => running -= 1,
-                Ok(_) => {}
-                Err(_) => break,
+        let (sender, events) = mpsc::channel();
+        let (judge, left, right) = (&judge, sender.clone(), sender);
+        let sound = scope.spawn(move || judge("left", "mock", left));
+        let broken = scope.spawn(move || judge("right", "mock,fault=stuck-data", right));
+        // They end once both threads have let go of their senders, also if a board cannot be opened.
+        for (name, event) in events {
+            match event {
+                Event::Step(step) => println!("{name}: {step}"),
+                Event::Frame(frame) => println!("{name}: {frame}"),
+                _ => {}
             }
         }
         [sound.join(), broken.join()].map(|joined| joined.map_err(|_| "a run panicked")?)

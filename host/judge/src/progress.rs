@@ -33,7 +33,7 @@ pub enum Event {
     Rows(u64),
     /// Frames of a soak were judged.
     Soaked(Soaked),
-    /// The run is over.
+    /// The run is over, in whatever way. A plan that is refused before the board is asked sends no event at all.
     Done,
 }
 
