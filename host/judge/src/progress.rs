@@ -81,6 +81,23 @@ pub enum Step {
     WaitForTheBoard,
 }
 
+impl Step {
+    /// Its name: stable, lower case.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::JudgeTheJudge => "judge",
+            Self::OpenTheBoard => "open",
+            Self::TestTheLink => "link",
+            Self::AtSpeed => "at-speed",
+            Self::Rules => "rules",
+            Self::LookAgain => "look-again",
+            Self::WaitForTheBoard => "wait",
+        }
+    }
+}
+
+/// In words for people, which may change.
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

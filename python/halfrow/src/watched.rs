@@ -72,11 +72,11 @@ fn without_result(worker: JoinHandle<()>) -> PyErr {
     }
 }
 
-/// Calls `listener` with the event's kind, words and rows.
+/// Calls `listener` with the event's kind, name and rows.
 fn tell(listener: Option<&Bound<'_, PyAny>>, event: &Event) -> PyResult<()> {
     let Some(listener) = listener else { return Ok(()) };
-    let (kind, words, rows) = match event {
-        Event::Step(step) => ("step", step.to_string(), 0),
+    let (kind, name, rows) = match event {
+        Event::Step(step) => ("step", step.name().to_owned(), 0),
         Event::RowsExpected(rows) => ("rows-expected", String::new(), *rows),
         Event::Frame(name) => ("frame", name.clone(), 0),
         Event::Rows(rows) => ("rows", String::new(), *rows),
@@ -84,5 +84,5 @@ fn tell(listener: Option<&Bound<'_, PyAny>>, event: &Event) -> PyResult<()> {
         Event::Soaked(_) => return Ok(()),
         Event::Done => ("done", String::new(), 0),
     };
-    listener.call1((kind, words, rows)).map(drop)
+    listener.call1((kind, name, rows)).map(drop)
 }

@@ -270,6 +270,7 @@ def test_what_progress_raises_ends_the_run(small):
     with pytest.raises(Enough):
         halfrow.verify(tables=small, repeat=1000, progress=stop)
 
+    assert [event[2] for event in told if event[1] == "step"] == ["judge", "open", "link", "at-speed", "rules"]
 
 def test_other_threads_run_on_meanwhile(small, steps_beside):
     until(lambda: steps_beside(lambda: halfrow.verify(tables=small)) > 0)
@@ -343,6 +344,6 @@ def test_ctrl_c_ends_a_run_and_gives_the_board_back(judging):
 def test_ctrl_c_ends_a_run_that_waits_for_a_board_to_come_back(judging, served):
     lines_until(judging, "frame")
     served[0].kill()
-    lines_until(judging, "step waiting for the board")
+    lines_until(judging, "step wait")
     judging.send_signal(signal.SIGINT)
     lines_until(judging, "interrupted")

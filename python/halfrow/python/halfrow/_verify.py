@@ -63,8 +63,9 @@ def verify(
     report: a folder for report.json, report.xml (JUnit) and report.html.
     record: a file for every byte of the run with its time, for replay:FILE.
     overwrite: replace what an earlier run has written.
-    progress: a function that is called in this thread with ("step", words, 0), ("rows-expected", "", rows), ("frame", name, 0),
-        ("rows", "", rows that came back since the last call) and ("done", "", 0); an exception from it ends the run.
+    progress: a function that is called in this thread with ("step", name, 0), ("rows-expected", "", rows), ("frame", name, 0),
+        ("rows", "", rows that came back since the last call) and ("done", "", 0); an exception from it ends the run. The names of
+        steps are judge, open, link, at-speed, rules, look-again and wait, and more may come.
 
     Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and then raises
     here. A second one raises at once, while the run gives the board back in the background.
