@@ -62,7 +62,7 @@ def test_the_result_is_that_of_the_program(program):
 
 # Members of a report that only its `document` has. A new one must become a field, or be listed here as rarely needed by scripts.
 IN_THE_DOCUMENT_ALONE = {
-    "Report": {"command", "schema", "exit_code", "evidence", "lacks", "within", "soak"},
+    "Report": {"command", "schema", "exit_code", "evidence", "within", "soak"},
     "Identity": {"least_blanking", "table_banks", "row_banks_in", "row_banks_out", "bursts", "entered", "grids"},
     "Suspect": {"account"},
     "Comparison": {"extremes", "bits", "by_row", "by_column"},
@@ -86,7 +86,8 @@ def test_reports_have_the_members_that_the_schema_has(small):
         assert known - fields == IN_THE_DOCUMENT_ALONE.get(ours, set()), ours
     whole = halfrow.verify(tables=small, frames=["builtin:black"], at_speed=0)
     own = {field.name for field in dataclasses.fields(halfrow.Report)} - {"text", "document"}
-    assert own <= set(whole.document) and set(schema["required"]) <= set(whole.document)
+    # Left out of a document if there are none.
+    assert own <= set(whole.document) | {"lacks"} and set(schema["required"]) <= set(whole.document)
     with pytest.raises(dataclasses.FrozenInstanceError):
         whole.verdict = "FAIL"
 
@@ -176,6 +177,19 @@ def test_a_report_is_written_and_not_overwritten_unasked(tmp_path, small):
         again.save(tmp_path / "c")
 
 
+@pytest.mark.parametrize(("target", "verdict"), [("mock", "ERROR"), ("mock,fault=stuck-data,bit=7", "FAIL")])
+def test_a_report_that_could_not_be_written_is_told_under_every_verdict(tmp_path, small, target, verdict):
+    def take(*_):
+        (tmp_path / "a").mkdir(exist_ok=True)
+        (tmp_path / "a/of somebody else").touch()
+
+    report = halfrow.verify(target, tables=small, report=tmp_path / "a", progress=take)
+    assert report.verdict == verdict
+    told = [report.error] if verdict == "ERROR" else list(report.lacks)
+    assert [problem.code for problem in told] == ["report-lost"] and told[0].remedy
+    assert len(report.lacks) == (0 if verdict == "ERROR" else 1)
+
+
 def test_a_board_that_cannot_be_opened_has_a_report(tmp_path, program, small):
     with pytest.raises(halfrow.HalfrowError) as raised:
         halfrow.verify("serial:/dev/none", tables=small, report=tmp_path / "a")
@@ -256,6 +270,7 @@ def test_progress_is_told_in_the_callers_thread(small):
     kinds = [event[1] for event in told]
     assert kinds[-1] == "done" and {"step", "rows-expected", "frame", "rows"} < set(kinds)
     assert {frame.name for frame in report.frames} <= {event[2] for event in told if event[1] == "frame"}
+    assert [event[2] for event in told if event[1] == "step"] == ["judge", "open", "link", "at-speed", "rules"]
     rows = sum(event[3] for event in told if event[1] == "rows")
     assert rows >= sum(frame.rows for frame in report.frames) > 0
 
@@ -270,7 +285,6 @@ def test_what_progress_raises_ends_the_run(small):
     with pytest.raises(Enough):
         halfrow.verify(tables=small, repeat=1000, progress=stop)
 
-    assert [event[2] for event in told if event[1] == "step"] == ["judge", "open", "link", "at-speed", "rules"]
 
 def test_other_threads_run_on_meanwhile(small, steps_beside):
     until(lambda: steps_beside(lambda: halfrow.verify(tables=small)) > 0)

@@ -243,6 +243,8 @@ class Report:
     """The result as a code."""
     error: Optional[Problem]
     """Why there is no judgement; None for PASS and FAIL."""
+    lacks: Tuple[Problem, ...]
+    """What was asked for and could not be written, under FAIL and ERROR. A PASS without it is an ERROR, and `error` says it."""
     board: Board
     suspects: Tuple[Suspect, ...]
     """The parts that the pattern of differences points at, the likeliest first."""
@@ -304,10 +306,11 @@ def _made(kind: Any, values: Dict[str, Any]) -> Any:
 
 
 def _value(hint: Any, value: Any) -> Any:
+    if get_origin(hint) is tuple:
+        # The document leaves out what holds nothing.
+        return tuple(_value(get_args(hint)[0], item) for item in value or ())
     if value is None:
         return None
     if get_origin(hint) is Union:
         return _value(get_args(hint)[0], value)
-    if get_origin(hint) is tuple:
-        return tuple(_value(get_args(hint)[0], item) for item in value)
     return _made(hint, value) if dataclasses.is_dataclass(hint) else value

@@ -61,7 +61,8 @@ def verify(
     take_over: take the board over from another host that holds it.
     require_hardware: refuse to judge anything but hardware.
     report: a folder for report.json, report.xml (JUnit) and report.html.
-    record: a file for every byte of the run with its time, for replay:FILE.
+    record: a file for every byte of the run with its time, for replay:FILE. If it or `report` cannot be written in the end, that
+        raises nothing: a PASS becomes an ERROR, and under any other verdict `lacks` of the returned report says it.
     overwrite: replace what an earlier run has written.
     progress: a function that is called in this thread with ("step", name, 0), ("rows-expected", "", rows), ("frame", name, 0),
         ("rows", "", rows that came back since the last call) and ("done", "", 0); an exception from it ends the run. The names of
