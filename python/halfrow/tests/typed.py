@@ -1,4 +1,5 @@
 """What mypy --strict must accept, and what it must refuse: an unneeded `ignore` is also an error."""
+from pathlib import Path
 from typing import Hashable, Optional, Tuple
 
 import halfrow
@@ -17,6 +18,8 @@ def straightened(path: str) -> NDArray[np.uint16]:
 
 def judged(board: JudgedBoard) -> str:
     report = board.verify(frames=["builtin:street"])
+    board.verify(tabels=1)  # type: ignore[call-arg]
+    halfrow.verify(frames=Path("raw").glob("*.pgm"))
     suspect: halfrow.Suspect = report.suspects[0]
     first = report.frames[0].comparison.first
     first.row  # type: ignore[union-attr]

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import Callable, Dict, Iterable, Optional, Sequence, Union
+from typing import Callable, Dict, Iterable, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ def verify(
     *,
     tables: Optional[Tables] = None,
     kernel: Union[Kernel, Name, None] = None,
-    frames: Union[Frame, Sequence[Frame], None] = None,
+    frames: Union[Frame, Iterable[Frame], None] = None,
     phase: str = "grbg",
     repeat: int = 1,
     seed: int = 1,

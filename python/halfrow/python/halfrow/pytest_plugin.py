@@ -12,7 +12,7 @@ import contextlib
 import hashlib
 import pathlib
 import re
-from typing import Any, Dict, Generator, List, Optional, Set
+from typing import TYPE_CHECKING, Any, Callable, Dict, Generator, List, Optional, Set
 
 import pytest
 
@@ -31,6 +31,19 @@ _LIST = ".halfrow-kept"
 _LENGTH = 240
 
 
+if TYPE_CHECKING:
+    from typing_extensions import Concatenate, ParamSpec
+
+    _Options = ParamSpec("_Options")
+
+
+def _takes_options_of(
+    judge: Callable[Concatenate[str, _Options], Report],
+) -> Callable[[Callable[..., Report]], Callable[Concatenate[JudgedBoard, _Options], Report]]:
+    """Types a method that hands its options on to `judge`."""
+    return lambda method: method
+
+
 class JudgedBoard:
     """The board of a test. Every report is kept until the test has ended."""
 
@@ -40,6 +53,7 @@ class JudgedBoard:
         self.reports = reports
         """The reports so far, the oldest first."""
 
+    @_takes_options_of(verify)
     def verify(self, **options: Any) -> Report:
         """Judges the board; the options are those of halfrow.verify."""
         try:
