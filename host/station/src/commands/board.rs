@@ -16,7 +16,7 @@ use serde_json::json;
 use super::beginning::{SettingsFile, Signal, plant};
 use super::looking::{either, table, time};
 use super::why::{Why, at_plant, name, person};
-use super::{Failure, print, print_line};
+use super::{Failure, print, tell};
 use crate::console;
 use crate::exit::Exit;
 use crate::said::Said;
@@ -250,7 +250,7 @@ fn shared(plant: &mut Plant, share: &Share) -> Result<Exit, Failure> {
 
 fn changed(is_changed: bool, name: &str, done: &'static str) -> Result<Exit, Failure> {
     if is_changed {
-        return print_line(&format!("{name} is {done}"));
+        return Ok(tell(&format!("{name} is {done}")));
     }
     Err(Failure::call(NoBoard { name: name.to_owned(), done }))
 }

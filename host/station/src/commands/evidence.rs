@@ -10,7 +10,7 @@ use halfrow::words::count;
 
 use super::export::{NoFolder, unwritten};
 use super::looking::Data;
-use super::{Failure, print, print_line};
+use super::{Failure, print, tell};
 use crate::exit::Exit;
 use crate::history::unit::{UnitRun, run_of};
 use crate::record::Attachment;
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::error(EvidenceRemoved { names: old.join(", "), run: run.clone() }));
     }
     let files = count(found.attachments.len(), "file");
-    print_line(&format!("{files} of evidence in {}", to.display()))
+    Ok(tell(&format!("{files} of evidence in {}", to.display())))
 }
 
 /// Writes a file, unless the very same one is there already.

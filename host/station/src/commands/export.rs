@@ -9,7 +9,7 @@ use halfrow::words::{self, verb};
 
 use super::evidence::over;
 use super::looking::{Filtered, Results};
-use super::{Failure, print_line};
+use super::{Failure, tell};
 use crate::console;
 use crate::exit::Exit;
 use crate::export::{self, ExportError, Format, Table};
@@ -80,7 +80,7 @@ fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit
         })?
     };
     let (runs, are) = (words::count(written, "run"), verb(written, "are"));
-    let exit = print_line(&format!("{runs} {are} in {}", to.display()))?;
+    let exit = tell(&format!("{runs} {are} in {}", to.display()));
     if lost.is_empty() { Ok(exit) } else { Err(Failure::error(RunsLost { runs: lost.join(", ") })) }
 }
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use halfrow::words::plain_lines;
 
+use super::Failure;
 use super::beginning::{NoPlant, SettingsFile};
-use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
 use crate::guard::guarded;
@@ -32,7 +32,8 @@ pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
         said.push(format!("{version}, number {number}{}", if is_new { NEW } else { "" }));
     }
     let named = published.plans.iter().zip(said).map(|(plan, said)| format!("{plan} {said}"));
-    print(&plain_lines(named))
+    console::tell(&plain_lines(named));
+    Ok(Exit::Pass)
 }
 
 /// Fetches them when a station begins its work. If that fails, the station goes on with the copies that it has, unless

@@ -8,7 +8,7 @@ use halfrow_program::number::counted;
 use super::beginning::{SettingsFile, plant};
 use super::looking::{either, table, time};
 use super::why::{Why, at_plant, name, person};
-use super::{Failure, print, print_line};
+use super::{Failure, print, tell};
 use crate::console;
 use crate::exit::Exit;
 use crate::plan::Plan;
@@ -183,7 +183,7 @@ fn warn_of_no_board(address: &PlantAddress, kind: &str, product: &str) -> Result
 
 fn changed(is_changed: bool, id: &str, done: &'static str) -> Result<Exit, Failure> {
     if is_changed {
-        return print_line(&format!("{id} is {done}"));
+        return Ok(tell(&format!("{id} is {done}")));
     }
     Err(Failure::call(NoJob { id: id.to_owned(), done }))
 }

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::looking::Data;
 use super::why::{at_station, person};
-use super::{Failure, document, print, print_line};
+use super::{Failure, document, tell};
 use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
@@ -49,7 +49,7 @@ pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
     }
     let mut lines: Vec<_> = faults.iter().chain(left_out).map(|fault| format!("fault: {fault}")).collect();
     if lines.is_empty() {
-        return print_line(&told);
+        return Ok(tell(&told));
     }
     lines.push(told);
     console::tell(&plain_lines(&lines));
@@ -69,7 +69,7 @@ pub(super) struct Restore {
 pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
     let copied = kept::restore(&Folder::new(&arguments.from), &arguments.data)?;
     let (runs, pieces) = (count(copied.runs, "run"), count(copied.evidence, "piece"));
-    print_line(&format!("{runs} and {pieces} of evidence were read back{}", with_unknown(&copied)))
+    Ok(tell(&format!("{runs} and {pieces} of evidence were read back{}", with_unknown(&copied))))
 }
 
 /// What a copy has beyond what its rows name.
@@ -116,19 +116,20 @@ pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
         let Unnamed { pieces, spools, bytes } = unnamed;
         let unnamed = json!({ "pieces": pieces, "spools": spools, "bytes": bytes });
         let rest = json!({ "old": old, "unnamed": unnamed });
-        return print(&document::text("prune", Exit::Pass, None, rest)?);
+        console::tell(&document::text("prune", Exit::Pass, None, rest)?);
+        return Ok(Exit::Pass);
     }
     let Pruned { pieces, bytes } = old;
     let evidence = format!("{} of evidence {} removed", count(pieces, "piece"), verb(pieces, "were"));
     let by_age = older_than.map(|_| format!("{evidence}, {}; ", count(bytes, "byte")));
     let Unnamed { pieces, spools, bytes } = unnamed;
-    print(&format!(
+    Ok(tell(&format!(
         "{}{} and {} that no row names were removed, {}; every record is kept",
         by_age.unwrap_or_default(),
         count(pieces, "piece"),
         count(spools, "spool"),
         count(bytes, "byte")
-    ))
+    )))
 }
 
 impl From<CopyError> for Failure {

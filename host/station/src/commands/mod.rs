@@ -226,13 +226,15 @@ impl From<StoreError> for Failure {
     }
 }
 
-/// Prints a result in one line, whatever names it holds.
-fn print_line(line: &str) -> Result<Exit, Failure> {
-    print(&plain(line))
-}
-
 /// Prints a result, which is the command's only one.
 fn print(text: &str) -> Result<Exit, Failure> {
     console::print(text)?;
     Ok(Exit::Pass)
+}
+
+/// Tells in one line, whatever names it holds, of what is done, and stays done though stdout takes nothing: whoever took it for failed
+/// would do it again.
+fn tell(line: &str) -> Exit {
+    console::tell_line(line);
+    Exit::Pass
 }

@@ -7,7 +7,8 @@ use serde::Serialize;
 use super::beginning::{Disk, SettingsFile, sinks};
 use super::looking::{either, table, time};
 use super::why::{Why, at_station};
-use super::{Failure, print, print_line};
+use super::{Failure, tell};
+use crate::console;
 use crate::exit::Exit;
 use crate::outbox::all;
 use crate::settings::Settings;
@@ -116,7 +117,7 @@ fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> 
     if released == 0 {
         return Err(Failure::call(NotDead { what: what.to_owned() }));
     }
-    print_line(&format!("{released} of {what} {} tried again", verb(released, "are")))
+    Ok(tell(&format!("{released} of {what} {} tried again", verb(released, "are"))))
 }
 
 fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
@@ -133,7 +134,7 @@ fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<
             "; `halfrow-station outbox release --sink {sink}` has {dead} more tried, which wait for a person"
         ),
     };
-    print_line(&format!("{again} of {sink} {} sent again{rest}", verb(again, "are")))
+    Ok(tell(&format!("{again} of {sink} {} sent again{rest}", verb(again, "are"))))
 }
 
 fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
@@ -145,7 +146,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
         return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
     }
     let forgotten = store.forget_sink(sink, why.by())?;
-    print_line(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are")))
+    Ok(tell(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are"))))
 }
 
 /// Sends to every sink what it does not have yet, and prints what is left.
@@ -164,11 +165,15 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     // What was for former sinks is not sent to them any more.
     left.retain(|unsent| sinks.iter().any(|sink| sink.name() == unsent.sink));
     if sent == 0 && left.is_empty() {
-        return print(NOTHING_LEFT);
+        return Ok(tell(NOTHING_LEFT));
     }
     let entries: u32 = left.iter().map(|unsent| unsent.entries).sum();
-    print(&format!("{sent} sent, {entries} not"))?;
-    if left.is_empty() { Ok(Exit::Pass) } else { print(&table_of(&left)).map(|_| Exit::Error) }
+    let sent = tell(&format!("{sent} sent, {entries} not"));
+    if left.is_empty() {
+        return Ok(sent);
+    }
+    console::tell(&table_of(&left));
+    Ok(Exit::Error)
 }
 
 fn text(Backlog { unsent, dead }: &Backlog) -> String {

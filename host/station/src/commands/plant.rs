@@ -9,7 +9,7 @@ use halfrow_program::number::counted;
 use super::beginning::{SettingsFile, Signal, make_data, plant};
 use super::fetching::{address, published};
 use super::why::{Why, at_plant};
-use super::{Failure, check, print, print_line};
+use super::{Failure, check, tell};
 use crate::check::check_plant;
 use crate::console;
 use crate::exit::Exit;
@@ -78,12 +78,12 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         Action::Prepare => {
             let address = address()?;
             let version = Plant::prepare(&address.patient())?;
-            print_line(&format!("the plant {address} has version {version}"))
+            Ok(tell(&format!("the plant {address} has version {version}")))
         }
         Action::Forget { station, why } => {
             let mut plant = at_plant(&address()?, &why.operator, &format!("plant forget {station}"))?;
             if plant.forget(station, why.by())? {
-                return print_line(&format!("the next folder that says it is {station} is taken for it"));
+                return Ok(tell(&format!("the next folder that says it is {station} is taken for it")));
             }
             Err(Failure::call(NoStation { station: station.clone() }))
         }
@@ -97,7 +97,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let mut plant = at_plant(&address()?.patient(), &why.operator, "plant prune")?;
             let removed = plant.prune(*older_than, why.by(), &mut told)?;
             let (rows, were) = (count(removed, "row"), verb(removed, "were"));
-            print(&format!("{rows} {were} removed; every record is kept"))
+            Ok(tell(&format!("{rows} {were} removed; every record is kept")))
         }
         Action::Serve => serve(settings.load_without_lanes()?),
     }

@@ -10,7 +10,7 @@ use super::beginning::SettingsFile;
 use super::fetching::{address, published};
 use super::looking::{either, table, time};
 use super::why::{Why, entered_at};
-use super::{Failure, print, print_line};
+use super::{Failure, print, tell};
 use crate::exit::Exit;
 use crate::history::PlanName;
 use crate::plan::Plan;
@@ -202,7 +202,7 @@ impl Desk<'_> {
         if !self.at.publish(&statement, &signature, bundle)? {
             return Err(Failure::error(PublishError::TooLate { plan: name.to_string() }));
         }
-        print_line(&format!("{name} {version} holds, as number {}", statement.number))
+        Ok(tell(&format!("{name} {version} holds, as number {}", statement.number)))
     }
 }
 

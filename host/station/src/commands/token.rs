@@ -4,7 +4,7 @@ use clap::{Args, Subcommand};
 use halfrow::words::plain_lines;
 
 use super::beginning::{SettingsFile, make_data};
-use super::{Failure, print, print_line};
+use super::{Failure, print, tell};
 use crate::exit::Exit;
 use crate::web::{Scope, Tokens, add_token};
 
@@ -61,7 +61,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         }
         Action::Remove { name } => {
             Tokens::remove_from(file, name)?;
-            print_line(&format!("{name} may not read any more"))
+            Ok(tell(&format!("{name} may not read any more")))
         }
         Action::List => {
             let tokens = Tokens::load_or_none(file)?;

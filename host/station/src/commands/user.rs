@@ -12,7 +12,7 @@ use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::sys::termios::{self, LocalFlags, SetArg};
 
 use super::beginning::{SettingsFile, make_data};
-use super::{Failure, print, print_line};
+use super::{Failure, print, tell};
 use crate::console;
 use crate::exit::Exit;
 use crate::web::{Role, Users, add_user};
@@ -62,11 +62,11 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let badge = asked("badge")?;
             let password = if *role == Role::Engineer { asked("password")? } else { String::new() };
             add_user(&settings, &access.users, (name.trim(), *role), &badge, &password)?;
-            print_line(&format!("{} may act as {role}", name.trim()))
+            Ok(tell(&format!("{} may act as {role}", name.trim())))
         }
         Action::Remove { name } => {
             Users::remove_from(&access.users, name)?;
-            print_line(&format!("{name} may not act any more"))
+            Ok(tell(&format!("{name} may not act any more")))
         }
         Action::List => {
             let users = Users::load_or_none(&access.users)?;

@@ -2,10 +2,9 @@
 
 use clap::Args;
 
-use super::Failure;
 use super::looking::Data;
 use super::why::{Why, at_station};
-use crate::console;
+use super::{Failure, tell};
 use crate::exit::Exit;
 use crate::store::NoWaiver;
 
@@ -28,8 +27,7 @@ pub(super) fn run(Arguments { run, data, why }: &Arguments) -> Result<Exit, Fail
     let mut store = at_station(&data.folder(), operator, &format!("waive {run}"))?;
     let waiver = store.waive(run, operator, reason)?;
     let said = format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason);
-    console::tell_line(&said);
-    Ok(Exit::Pass)
+    Ok(tell(&said))
 }
 
 impl From<NoWaiver> for Failure {

@@ -26,6 +26,7 @@ pub(crate) mod shift_units;
 mod units;
 mod unnamed;
 mod untested;
+mod untold;
 mod upgraded;
 mod waivers;
 mod wilson;
