@@ -1,5 +1,7 @@
 //! What can be wrong.
 
+use std::error::Error as _;
+use std::iter;
 use std::path::PathBuf;
 
 use crate::record::{BlobError, RecordError};
@@ -135,6 +137,15 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// Its sentence, followed by those of its causes that are not in it, as the system's reason is not.
+    #[must_use]
+    pub fn told(&self) -> String {
+        let causes = iter::successors(self.source(), |&cause| cause.source()).map(ToString::to_string);
+        let with =
+            |told: String, cause: String| if told.contains(&cause) { told } else { told + ": " + &cause };
+        causes.fold(self.to_string(), with)
+    }
+
     /// Whether a table differs from what the records say.
     pub(crate) const fn is_of_table(&self) -> bool {
         matches!(self, Self::Differs { .. } | Self::Missing { .. } | Self::Surplus { .. })

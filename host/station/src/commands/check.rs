@@ -53,7 +53,7 @@ fn document(checked: &Checked, exit: Exit) -> Result<String, Failure> {
 
 /// A line for each fault, and one before those of the tables if they may only follow from the others.
 fn faults(Checked { unread, faults, .. }: &Checked) -> Vec<String> {
-    let mut lines: Vec<_> = faults.iter().map(|fault| format!("fault: {fault}")).collect();
+    let mut lines: Vec<_> = faults.iter().map(|fault| format!("fault: {}", fault.told())).collect();
     if let (1.., Some(place)) = (*unread, faults.iter().position(Fault::is_of_table)) {
         let (records, them) = (count(*unread, "record"), if *unread == 1 { "it" } else { "them" });
         let note = format!(

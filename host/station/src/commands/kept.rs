@@ -10,6 +10,7 @@ use serde_json::json;
 use super::looking::Data;
 use super::why::{at_station, person};
 use super::{Failure, document, tell};
+use crate::check::Fault;
 use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
@@ -31,7 +32,7 @@ pub(super) struct Backup {
 pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
     let copied = kept::backup(&arguments.data.folder(), &arguments.to)?;
     let faults: Vec<_> = match kept::faults(&Folder::new(&arguments.to)) {
-        Ok(faults) => faults.iter().map(ToString::to_string).collect(),
+        Ok(faults) => faults.iter().map(Fault::told).collect(),
         Err(error) => vec![Said::of(&error).to_string()],
     };
     let to = arguments.to.display();

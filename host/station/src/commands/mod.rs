@@ -41,7 +41,6 @@ use clap::{ArgAction, Parser, Subcommand};
 
 use document::IN_LINES;
 pub use document::{code, failure};
-use halfrow::words::plain;
 
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;

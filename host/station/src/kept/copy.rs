@@ -13,6 +13,7 @@ use super::unnamed::beyond_rows;
 use crate::check::{Fault, check, foreign};
 use crate::published::{BundleError, KeptPlans};
 use crate::record::{BlobError, Blobs, Piece, synced};
+use crate::said::Said;
 use crate::store::{ASIDE, Folder, LOCK, Snapshot, Store, StoreError};
 
 /// What was copied.
@@ -234,7 +235,7 @@ fn refuse(folder: &Folder, named: &Folder, faults: &[Fault]) -> Result<(), CopyE
         Some(first) => Err(CopyError::Faulty {
             path: named.path().to_owned(),
             faults: faults.len(),
-            first: first.to_string().replace(&folder, &name),
+            first: first.told().replace(&folder, &name),
         }),
     }
 }
@@ -328,7 +329,7 @@ fn unless_left_out<T>(
         Err(error) if ends(&error) => Err(error),
         Err(error) => {
             if !error.is_gone() {
-                left_out.insert(error.to_string());
+                left_out.insert(Said::of(&error).to_string());
             }
             Ok(None)
         }

@@ -48,12 +48,20 @@ pub enum BlobError {
     },
 }
 
-/// What to do about a file that cannot be read. One that is another user's need not be wrong.
+/// What to do about a file that cannot be read. One that is another user's need not be wrong, nor one that the disk, a share or
+/// the limits of this program withhold for a moment.
 fn remedy(source: &io::Error) -> &'static str {
-    if source.kind() == io::ErrorKind::PermissionDenied {
-        "this user may not read it: use that of the station, to whom everything in its folder must belong"
-    } else {
-        "put the file of that name from a copy of the station's folder there"
+    use io::ErrorKind::{InvalidInput, NotADirectory, NotFound, PermissionDenied};
+    match source.kind() {
+        PermissionDenied => {
+            "this user may not read it: use that of the station, to whom everything in its folder must belong"
+        }
+        NotFound | NotADirectory | InvalidInput => {
+            "put the file of that name from a copy of the station's folder there"
+        }
+        _ => {
+            "read it again, and only if that fails too, put the file of that name from a copy of the station's folder there"
+        }
     }
 }
 

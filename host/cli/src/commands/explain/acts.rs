@@ -38,7 +38,10 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     ("command-failed", "do what the end of its sentence says, then run again"),
     ("evidence-not-written", "make room on the station's disk, then test the board again"),
-    ("evidence-unreadable", "run as the station's user, or bring the file back from a copy of its folder"),
+    (
+        "evidence-unreadable",
+        "try again, run as the station's user, or bring the file back from a copy of its folder",
+    ),
     ("fault-not-made", CAUSE),
     ("fault-parameter-wrong", CAUSE),
     (

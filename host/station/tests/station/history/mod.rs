@@ -25,6 +25,7 @@ pub(crate) mod served;
 pub(crate) mod shift_units;
 mod units;
 mod unnamed;
+mod unread;
 mod untested;
 mod untold;
 mod upgraded;
