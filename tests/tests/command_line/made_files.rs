@@ -1,6 +1,6 @@
 //! `tables` and `frames`: what they write, and that `verify` accepts it.
 
-use halfrow_tests::program::{Folder, halfrow};
+use halfrow_tests::program::{Folder, finish, halfrow};
 
 use crate::{refused, small};
 
@@ -47,6 +47,46 @@ fn memory_images_hold_the_same_words() {
     );
     assert_eq!(words.len(), 1080);
     assert_eq!(folder.text("lens.kernel.mem").lines().filter(|line| line.len() == 20).count(), 65);
+}
+
+/// `$readmemh` takes both, and nothing says that they are of two lenses.
+#[test]
+fn of_two_memory_images_that_belong_together_none_is_replaced_when_one_cannot_be() {
+    let folder = Folder::new();
+    let images = || ["l.steps.mem", "l.kernel.mem"].map(|name| folder.text(name));
+    let line = "exec strace -f -qq -o /dev/null -e inject=rename,renameat2:error=EIO:when=2 \"$@\"";
+    let refused = |more: &[&str]| {
+        let call = small("tables", &["-o", "l.mem"]);
+        let ended = finish(&mut folder.by_shell(line, call.into_iter().chain(more.iter().copied())));
+        assert_eq!(ended.code, Some(3), "{ended:?}");
+        assert!(ended.stderr.contains("cannot write l.kernel.mem"), "{ended:?}");
+    };
+    refused(&[]);
+    assert_eq!(folder.names("."), [""; 0]);
+    assert_eq!(folder.halfrow(small("tables", &["-o", "l.mem"])).code, Some(0));
+    let earlier = images();
+    refused(&["--overwrite", "--kernel", "keys", "--centre-y", "3"]);
+    assert!(images() == earlier);
+    assert_eq!(folder.names("."), ["l.kernel.mem", "l.steps.mem"]);
+    let again = ["-o", "l.mem", "--overwrite", "--kernel", "keys", "--centre-y", "3"];
+    assert_eq!(folder.halfrow(small("tables", &again)).code, Some(0));
+    let new = images();
+    assert!(new[0] != earlier[0] && new[1] != earlier[1], "the control");
+    assert_eq!(folder.names("."), ["l.kernel.mem", "l.steps.mem"]);
+}
+
+/// Neither exFAT can swap names, nor some network file systems.
+#[test]
+fn a_memory_image_that_does_not_belong_to_the_other_is_named_where_names_cannot_be_swapped() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("tables", &["-o", "l.mem"])).code, Some(0));
+    let line = "exec strace -f -qq -o /dev/null -e inject=renameat2:error=EINVAL \
+                -e inject=rename:error=EIO:when=2 \"$@\"";
+    let ended = finish(&mut folder.by_shell(line, small("tables", &["-o", "l.mem", "--overwrite"])));
+    assert_eq!(ended.code, Some(3), "{ended:?}");
+    let warned: Vec<_> = ended.stderr.lines().filter(|line| line.contains("WARN")).collect();
+    assert!(matches!(warned[..], [line] if line.contains("l.steps.mem")), "{ended:?}");
+    assert_eq!(folder.names("."), ["l.kernel.mem", "l.steps.mem"]);
 }
 
 #[test]

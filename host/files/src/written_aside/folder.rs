@@ -183,7 +183,7 @@ impl AsideFolder {
 }
 
 /// The name of what was in the place `target`, while it is out of the way.
-fn earlier(target: &Path) -> OsString {
+pub(super) fn earlier(target: &Path) -> OsString {
     let name = under_way::shortened(target.file_name().unwrap_or_default());
     [name, OsStr::new(EARLIER)].into_iter().collect()
 }

@@ -10,6 +10,7 @@ mod lock;
 mod place;
 mod rename;
 mod rights;
+mod together;
 mod under_way;
 
 use std::fs::{self, File};
@@ -23,6 +24,7 @@ pub use error::{Unfinished, WriteAsideError};
 pub use folder::{AsideFolder, Misplaced};
 pub use place::{Place, check, check_folder};
 use rights::Rights;
+pub use together::put_all_in_place;
 pub use under_way::{Abandoned, abandon_all, clear, clear_older};
 
 /// Bytes that are written at once: writes of whole multiples of it are handed on as they are.

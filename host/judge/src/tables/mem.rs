@@ -13,7 +13,7 @@ use halfrow_protocol::message::Datapath;
 use super::{DATAPATH, MemError, Place, TableFileError, TableFormat, WrongDatapath, datapath_of};
 use crate::call::Input;
 use halfrow_files::text::{self, quoted};
-use halfrow_files::written_aside::{Aside, Claim, WriteAsideError};
+use halfrow_files::written_aside::{Aside, Claim, WriteAsideError, put_all_in_place};
 
 /// Hexadecimal digits of a row factor, and of an entry of a grid.
 const ENTRY_DIGITS: usize = 7;
@@ -57,7 +57,7 @@ fn name_of_both(path: &Path) -> PathBuf {
 }
 
 /// Writes both files for `path`, named by [`paths`], and returns their names. Neither is put in place before both are
-/// written.
+/// written, and if one is refused its place, the other is as before.
 ///
 /// # Errors
 /// [`WriteAsideError`] when one of them exists and `overwrite` is false, or cannot be written.
@@ -74,7 +74,7 @@ pub fn write(
         Aside::written(&rows, overwrite, |out| out.write_all(tables_text(tables).as_bytes()))?,
         Aside::written(&nodes, overwrite, |out| out.write_all(kernel_text(kernel).as_bytes()))?,
     ];
-    written.into_iter().try_for_each(Aside::put_in_place)?;
+    put_all_in_place(written)?;
     Ok(vec![rows, nodes])
 }
 
