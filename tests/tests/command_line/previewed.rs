@@ -2,6 +2,7 @@
 
 use halfrow::frames::preview::RgbImage;
 use halfrow_tests::program::Folder;
+use serde_json::json;
 
 use crate::{refused, small};
 
@@ -119,4 +120,40 @@ fn previews_that_have_no_place_are_refused() {
     refused(&folder, &small("correct", &one_for_two), "name a folder with --preview");
     let nowhere = ["builtin:black", "--model", "-o", "none/out.dng"];
     refused(&folder, &small("correct", &nowhere), "check that it exists and is writable");
+}
+
+/// Whoever does what the message says is stopped by the frame that is there already, and must know of it.
+#[test]
+fn a_frame_that_is_in_place_is_told_though_its_preview_cannot_be_written() {
+    let call = small("correct", &["builtin:noise", "--model", "-o", "a.pgm", "--preview", "a.png"]);
+    for json in [false, true] {
+        let folder = Folder::new();
+        // A frame of 128 x 16 samples of two bytes fits into 9 blocks of 512 bytes, and noise in three colours does not.
+        let ended = folder.halfrow_on_a_full_disk(9, call.iter().copied().chain(json.then_some("--json")));
+        assert_eq!((ended.code, folder.names(".")), (Some(3), vec!["a.pgm".to_owned()]), "{ended:?}");
+        assert!(ended.stderr.contains("cannot write a.png"), "{ended:?}");
+        if json {
+            let said = ended.json();
+            let told = ["corrected_by", "outputs", "previews"].map(|key| said[key].clone());
+            assert_eq!(told, [json!("model"), json!(["a.pgm"]), json!([])]);
+        } else {
+            assert!(
+                ended.stdout.starts_with("wrote a.pgm, corrected by the model, not judged\n"),
+                "{ended:?}"
+            );
+            assert!(!ended.stdout.contains("a.png"), "{ended:?}");
+        }
+    }
+}
+
+#[test]
+fn frames_by_a_board_that_are_in_place_are_told_though_a_later_one_cannot_be_written() {
+    let folder = Folder::new();
+    let inputs = ["builtin:black", "builtin:noise", "--board", "mock", "-o", "out", "--format", "png"];
+    // Black shrinks to a few bytes, and noise does not.
+    let ended = folder.halfrow_on_a_full_disk(2, small("correct", &inputs).into_iter().chain(["--json"]));
+    assert_eq!((ended.code, folder.names("out")), (Some(3), vec!["black.png".to_owned()]), "{ended:?}");
+    let said = ended.json();
+    let told = ["corrected_by", "outputs", "previews"].map(|key| said[key].clone());
+    assert_eq!(told, [json!("mock"), json!(["out/black.png"]), json!([])]);
 }

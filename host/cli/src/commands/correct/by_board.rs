@@ -18,26 +18,24 @@ use halfrow::correction::Correction;
 use halfrow::frames::{self, Decoded};
 use halfrow::progress::Progress;
 use halfrow::run;
-use halfrow::target::BoardKind;
 
 /// How often to look whether to stop while an input is awaited.
 const LOOK: Duration = Duration::from_millis(10);
 
 impl Job<'_> {
-    /// Corrects all frames, and returns the kind of board that did. The first failure ends the rest; frames written by then
-    /// stay.
+    /// Corrects all frames. The first failure ends the rest; frames written by then stay.
     pub(super) fn by_board(
         &self,
         places: &Places,
         context: &Context,
         progress: &dyn Progress,
-    ) -> Result<BoardKind, Failure> {
+    ) -> Result<(), Failure> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
         let options = self.arguments.board.open_options(&context.settings)?;
         Board::with(candidate.link, &options, |board| {
             run::check_fit(&self.chosen.tables, &self.chosen.kernel, board.capabilities())?;
-            self.stream(board, places, &options.stop, progress)?;
-            Ok(candidate.kind.confirmed_by(board.capabilities().nature))
+            self.kind.get_or_init(|| candidate.kind.confirmed_by(board.capabilities().nature));
+            self.stream(board, places, &options.stop, progress)
         })?
     }
 
@@ -109,6 +107,7 @@ impl Job<'_> {
             .map_err(Failure::error)?;
         frames::write_oriented(&places.frames[index], &frame, look.orientation, self.arguments.overwrite)
             .map_err(Failure::error)?;
+        self.note_written(&places.frames[index]);
         self.write_preview(places, index, look, &frame).map_err(Failure::error)
     }
 }

@@ -49,6 +49,7 @@ impl Job<'_> {
         let written =
             frames::write_rows(&places.frames[index], &shape, self.arguments.overwrite, correct_next);
         written.map_err(unwritten)?;
+        self.note_written(&places.frames[index]);
         if !kept.is_empty() {
             let corrected =
                 Frame::new(shape.width, shape.depth, shape.phase, kept).map_err(Failure::error)?;

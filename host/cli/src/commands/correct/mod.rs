@@ -4,10 +4,11 @@ mod by_board;
 mod by_model;
 mod places;
 
+use std::collections::HashSet;
 use std::ffi::{OsStr, OsString};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr as _;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use clap::Args;
 use halfrow_model::Frame;
@@ -97,6 +98,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         arguments,
         fittings: inputs.iter().map(|_| OnceLock::new()).collect(),
         inputs,
+        written: Mutex::default(),
+        kind: OnceLock::new(),
         how: arguments.input.read_options(&geometry, arguments.lens.phase, settings),
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,
@@ -107,13 +110,13 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     prepare_files(&files).map_err(Failure::call)?;
     let watched = context.progress();
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
-    let board = if arguments.model {
-        job.by_model(&places, watched.as_ref()).map(|()| None)
+    let corrected = if arguments.model {
+        job.by_model(&places, watched.as_ref())
     } else {
-        job.by_board(&places, context, watched.as_ref()).map(Some)
+        job.by_board(&places, context, watched.as_ref())
     };
     watched.done();
-    job.report(context.json, board?, &places)
+    job.report(context.json, corrected, &places)
 }
 
 /// How a frame is shown.
@@ -130,6 +133,10 @@ struct Job<'a> {
     inputs: Vec<FrameName>,
     /// How each of them was fitted, once it has been.
     fittings: Vec<OnceLock<Fitting>>,
+    /// The files that are in place.
+    written: Mutex<HashSet<PathBuf>>,
+    /// The kind of the board, once one is open.
+    kind: OnceLock<BoardKind>,
     how: ReadOptions,
     scene: Scene,
     chosen: Chosen,
@@ -176,15 +183,35 @@ impl Job<'_> {
         let Some(path) = places.previews.get(index) else { return Ok(()) };
         let is_coded = self.arguments.preview_coded || look.is_coded;
         let develop = if is_coded { preview::demosaic_coded } else { preview::demosaic };
-        frames::write_rgb(path, &develop(corrected).turned(look.orientation), self.arguments.overwrite)
+        frames::write_rgb(path, &develop(corrected).turned(look.orientation), self.arguments.overwrite)?;
+        self.note_written(path);
+        Ok(())
     }
 
-    /// Prints what was written, by which tables it was corrected, and by which kind of `board`, or by the model if none.
-    fn report(&self, as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Exit, Failure> {
-        let tables = &self.chosen.source;
+    fn note_written(&self, path: &Path) {
+        self.written.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());
+    }
+
+    /// Prints what was written, by which tables it was corrected, and by which kind of board, or by the model. What is in place
+    /// when the rest fails is in the way of the next call.
+    fn report(
+        &self,
+        as_json: bool,
+        corrected: Result<(), Failure>,
+        places: &Places,
+    ) -> Result<Exit, Failure> {
+        let written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        let [frames, previews] = [&places.frames, &places.previews]
+            .map(|paths| paths.iter().filter(|path| written.contains(*path)).collect::<Vec<_>>());
+        if written.is_empty()
+            && let Err(failure) = corrected
+        {
+            return Err(failure);
+        }
+        let (tables, board) = (&self.chosen.source, self.kind.get());
         if as_json {
-            let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
-            let [outputs, previews] = [&places.frames, &places.previews]
+            let kind = board.map_or_else(|| "model".to_owned(), ToString::to_string);
+            let [outputs, previews] = [frames, previews]
                 .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
             let fitted: Vec<_> =
                 self.fittings.iter().map(|fitting| fitting.get().map(fitting_json)).collect();
@@ -195,18 +222,21 @@ impl Job<'_> {
                 "previews": previews,
                 "fitted": fitted,
             });
+            if let Err(failure) = corrected {
+                return Err(Failure { so_far: Some(rest), ..failure });
+            }
             tell_result("correct", rest)?;
             return Ok(Exit::Pass);
         }
         let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
-        for path in &places.frames {
+        for path in frames {
             console::tell_line(&format!("wrote {}, corrected by the {whom}, not judged", path.display()));
         }
-        for path in &places.previews {
+        for path in previews {
             console::tell_line(&format!("wrote {}, a preview", path.display()));
         }
         console::tell_line(&format!("tables: {tables}"));
-        Ok(Exit::Pass)
+        corrected.map(|()| Exit::Pass)
     }
 }
 
