@@ -196,3 +196,29 @@ fn a_call_that_fits_no_board_leaves_no_report() {
     let call = ["verify", "--report", "out", "--board", "mock,max-width=128"];
     refused_with(2, &folder, &call, "do not fit the board");
 }
+
+/// What was written aside has a hidden name.
+#[test]
+fn a_run_without_descriptors_leaves_nothing_in_the_folder() {
+    for descriptors in 4..14 {
+        let folder = Folder::new();
+        let line = format!("ulimit -n {descriptors}; exec \"$@\"");
+        let ended = finish(&mut folder.by_shell(&line, small("verify", &["--report", "out"])));
+        let left: Vec<_> = folder.names(".").into_iter().filter(|name| name != "out").collect();
+        assert_eq!(left, [""; 0], "{descriptors}: {ended:?}");
+    }
+}
+
+#[test]
+fn an_earlier_report_that_cannot_be_removed_is_named() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("verify", &["--report", "out"])).code, Some(0));
+    let line = "exec strace -f -qq -o /dev/null -e inject=unlinkat:error=EIO \"$@\"";
+    let call = small("verify", &["--report", "out", "--overwrite"]);
+    let ended = finish(&mut folder.by_shell(line, call));
+    let names = folder.names(".");
+    let left: Vec<_> = names.iter().filter(|name| *name != "out").collect();
+    let [left] = left[..] else { panic!("{names:?}") };
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert!(ended.stderr.contains(&**left), "{left}: {ended:?}");
+}

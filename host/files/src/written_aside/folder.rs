@@ -5,9 +5,8 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
-
 use super::rights::Rights;
+use super::temporary::Temporary;
 use super::under_way::{self, Noted};
 use super::{folder_of, rename, settle, sync_folder};
 
@@ -20,7 +19,7 @@ const EARLIER: &str = ".earlier";
 /// its place.
 #[derive(Debug)]
 pub struct AsideFolder {
-    dir: TempDir,
+    dir: Temporary,
     target: PathBuf,
     /// Holds the lock.
     _held: File,
@@ -145,7 +144,7 @@ impl AsideFolder {
         if back.is_err() {
             // Under the name that it has now, a later run would remove it.
             let _ = under_way::to_free_name(self.path(), &earlier(&self.target));
-            let _ = self.dir.keep();
+            self.dir.keep();
         }
         back
     }
@@ -177,7 +176,7 @@ impl AsideFolder {
     fn done(self) {
         let Self { dir, target, .. } = self;
         // It has its final name by now, and must not be removed on drop.
-        let _ = dir.keep();
+        dir.keep();
         settle(&target);
     }
 }
@@ -190,6 +189,8 @@ pub(super) fn earlier(target: &Path) -> OsString {
 
 #[cfg(test)]
 mod tests {
+    use tempfile::TempDir;
+
     use super::*;
 
     fn text(folder: &Path) -> String {

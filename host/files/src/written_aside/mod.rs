@@ -10,6 +10,7 @@ mod lock;
 mod place;
 mod rename;
 mod rights;
+mod temporary;
 mod together;
 mod under_way;
 

@@ -17,11 +17,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use tempfile::{NamedTempFile, TempDir};
+use tempfile::NamedTempFile;
 
 use super::lock::{self, Tried};
 use super::rename;
 use super::rights::Rights;
+use super::temporary::Temporary;
 
 const PREFIX: &str = ".halfrow-";
 const ASIDE: &str = ".aside";
@@ -121,11 +122,11 @@ pub(super) fn file(
 }
 
 /// A locked folder in `parent`, with the given rights or ordinary ones, and the file that holds its lock.
-pub(super) fn folder(parent: &Path, rights: Option<Rights>) -> io::Result<(TempDir, File, Noted)> {
+pub(super) fn folder(parent: &Path, rights: Option<Rights>) -> io::Result<(Temporary, File, Noted)> {
     for _ in 0..TRIES {
         let (folder, noted) = made(|| {
             let mode = rights.map_or(0o777, Rights::mode);
-            let folder = builder(OsStr::new(ASIDE), mode).tempdir_in(parent)?;
+            let folder = Temporary::from(builder(OsStr::new(ASIDE), mode).tempdir_in(parent)?);
             let path = folder.path().to_owned();
             Ok((folder, path))
         })?;
