@@ -26,9 +26,10 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// A failure of the call or of its input.
+    /// A failure of the call or of its input, unless the system alone is its cause.
     pub(crate) fn call(error: impl Into<anyhow::Error>) -> Self {
-        Self::of(Exit::Usage, error)
+        let error = error.into();
+        Self::of(Exit::of_refusal(error.as_ref()), error)
     }
 
     /// A failure for which the call is not to blame.

@@ -7,7 +7,9 @@
 compile_error!("halfrow-files is for Linux alone; docs/portable.md says what works elsewhere");
 
 mod regular;
+mod system;
 pub mod text;
 pub mod written_aside;
 
 pub use regular::{NotRegular, check_regular};
+pub use system::is_of_system;

@@ -1,5 +1,9 @@
 //! Exit codes, which scripts rely on. Only here do classes of errors and causes of results become numbers.
 
+use std::error::Error;
+use std::{io, iter};
+
+use halfrow_files::is_of_system;
 use serde::Serialize;
 
 use crate::link::Class;
@@ -49,6 +53,15 @@ impl Exit {
     #[must_use]
     pub fn of(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|exit| exit.code() == code)
+    }
+
+    /// The one of a call that is refused because of `error`: a call that was right may meet a full disk, a fault of a device, or a
+    /// process that has too many files open.
+    #[must_use]
+    pub fn of_refusal(error: &(dyn Error + 'static)) -> Self {
+        let mut causes = iter::successors(Some(error), |&error| error.source());
+        let is_of_system = causes.any(|cause| cause.downcast_ref::<io::Error>().is_some_and(is_of_system));
+        if is_of_system { Self::Error } else { Self::Usage }
     }
 
     /// The process's exit code.
@@ -124,6 +137,7 @@ impl Serialize for Exit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::call::FilesError;
 
     #[test]
     fn a_code_carries_the_verdict_of_its_cause_and_a_signal_is_known_by_it() {
@@ -136,4 +150,28 @@ mod tests {
         let (gone, person, system) = (StoppedBy::Disconnection, StoppedBy::Person, StoppedBy::System);
         assert_eq!(signals, [Some(gone), Some(person), Some(system), None, None]);
     }
+
+    /// The numbers are those of errno(3) on Linux.
+    #[test]
+    fn what_the_system_refuses_a_right_call_is_no_wrong_call() {
+        let refused = |number: i32| {
+            let source = io::Error::from_raw_os_error(number);
+            // As a library wraps it that names the path.
+            let source = io::Error::new(source.kind(), Wrapped(source));
+            let path = "out".into();
+            Exit::of_refusal(&FilesError::FolderClosed { path, option: "--output", source })
+        };
+        for (name, number) in [("EIO", 5), ("ENFILE", 23), ("EMFILE", 24), ("ENOSPC", 28), ("EDQUOT", 122)] {
+            assert_eq!(refused(number), Exit::Error, "{name}");
+        }
+        for (name, number) in [("EPERM", 1), ("ENOENT", 2), ("EACCES", 13), ("EBUSY", 16), ("EROFS", 30)] {
+            assert_eq!(refused(number), Exit::Usage, "{name}");
+        }
+        let exists = FilesError::Exists { path: "out".into(), option: "--output" };
+        assert_eq!(Exit::of_refusal(&exists), Exit::Usage);
+    }
+
+    #[derive(Debug, thiserror::Error)]
+    #[error("it is at this path")]
+    struct Wrapped(#[source] io::Error);
 }

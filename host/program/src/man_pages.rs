@@ -34,7 +34,7 @@ impl ManualFolder {
         let pages = all(program).map_err(|error| (Exit::Error, error.into()))?;
         let places: Vec<_> = pages.iter().map(|page| folder.join(&page.name)).collect();
         let files = Files::new(*overwrite).reads(input).writes_into(FOLDER, &places);
-        prepare_files(&files).map_err(|error| (Exit::Usage, error.into()))?;
+        prepare_files(&files).map_err(|error| (Exit::of_refusal(&error), error.into()))?;
         let written = || {
             let (path, option) = (folder.clone(), FOLDER);
             fs::create_dir_all(folder).map_err(|source| FilesError::FolderClosed { path, option, source })?;

@@ -119,7 +119,7 @@ fn previews_that_have_no_place_are_refused() {
     let one_for_two = ["builtin:black", "builtin:white", "--model", "-o", "out", "--preview", "new.png"];
     refused(&folder, &small("correct", &one_for_two), "name a folder with --preview");
     let nowhere = ["builtin:black", "--model", "-o", "none/out.dng"];
-    refused(&folder, &small("correct", &nowhere), "check that it exists and is writable");
+    refused(&folder, &small("correct", &nowhere), "check that it exists, is writable and has space");
 }
 
 /// Whoever does what the message says is stopped by the frame that is there already, and must know of it.

@@ -197,6 +197,17 @@ fn a_call_that_fits_no_board_leaves_no_report() {
     refused_with(2, &folder, &call, "do not fit the board");
 }
 
+/// CI tries again after 3, and never after 2.
+#[test]
+fn a_disk_that_is_full_before_the_run_is_no_wrong_call() {
+    let folder = Folder::new();
+    for (error, code) in [("ENOSPC", 3), ("EDQUOT", 3), ("EACCES", 2), ("EROFS", 2)] {
+        let line = format!("exec strace -f -qq -o /dev/null -e inject=mkdir:error={error} \"$@\"");
+        let ended = finish(&mut folder.by_shell(&line, small("verify", &["--report", "out"])));
+        assert_eq!((ended.code, folder.names(".").len()), (Some(code), 0), "{error}: {ended:?}");
+    }
+}
+
 /// What was written aside has a hidden name.
 #[test]
 fn a_run_without_descriptors_leaves_nothing_in_the_folder() {
@@ -204,6 +215,7 @@ fn a_run_without_descriptors_leaves_nothing_in_the_folder() {
         let folder = Folder::new();
         let line = format!("ulimit -n {descriptors}; exec \"$@\"");
         let ended = finish(&mut folder.by_shell(&line, small("verify", &["--report", "out"])));
+        assert_ne!(ended.code, Some(2), "{descriptors}: {ended:?}");
         let left: Vec<_> = folder.names(".").into_iter().filter(|name| name != "out").collect();
         assert_eq!(left, [""; 0], "{descriptors}: {ended:?}");
     }

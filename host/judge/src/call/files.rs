@@ -60,7 +60,7 @@ pub enum FilesError {
         option: &'static str,
     },
     /// The output folder exists, but no file can be written into it.
-    #[error("cannot write into the folder {}; name another with {option}", path.display())]
+    #[error("cannot write into the folder {}; check that it has space, or name another with {option}", path.display())]
     FolderClosed {
         /// The folder.
         path: PathBuf,
@@ -71,7 +71,7 @@ pub enum FilesError {
     },
     /// The folder that a file is to be written into is missing, or no file can be written into it.
     #[error(
-        "nothing can be written into the folder {}; check that it exists and is writable, or name another place with \
+        "nothing can be written into the folder {}; check that it exists, is writable and has space, or name another place with \
          {option}", path.display()
     )]
     FolderUnusable {

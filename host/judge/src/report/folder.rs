@@ -71,7 +71,7 @@ pub enum ReportError {
         source: io::Error,
     },
     /// The report's folder cannot be made there.
-    #[error("cannot make the folder {}; check that the folder above it exists and is writable", path.display())]
+    #[error("cannot make the folder {}; check that the folder above it exists, is writable and has space", path.display())]
     Prepare {
         /// The path.
         path: PathBuf,

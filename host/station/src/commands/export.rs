@@ -143,7 +143,7 @@ impl From<ExportError> for Failure {
 
 /// The output folder cannot be made.
 #[derive(Debug, thiserror::Error)]
-#[error("{} cannot be a folder for the files; name another place", path.display())]
+#[error("{} cannot be a folder for the files; check that there is space, or name another place", path.display())]
 pub(super) struct NoFolder {
     pub(super) path: PathBuf,
     pub(super) source: io::Error,

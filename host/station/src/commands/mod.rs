@@ -110,9 +110,10 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// A failure of the call or of its input.
+    /// A failure of the call or of its input, unless the system alone is its cause.
     fn call(error: impl Into<anyhow::Error>) -> Self {
-        Self { exit: Exit::Usage, error: error.into() }
+        let error = error.into();
+        Self { exit: Exit::of_refusal(error.as_ref()), error }
     }
 
     /// A failure that is not the caller's.
