@@ -156,8 +156,6 @@ mod tests {
     fn what_the_system_refuses_a_right_call_is_no_wrong_call() {
         let refused = |number: i32| {
             let source = io::Error::from_raw_os_error(number);
-            // As a library wraps it that names the path.
-            let source = io::Error::new(source.kind(), Wrapped(source));
             let path = "out".into();
             Exit::of_refusal(&FilesError::FolderClosed { path, option: "--output", source })
         };
@@ -170,8 +168,4 @@ mod tests {
         let exists = FilesError::Exists { path: "out".into(), option: "--output" };
         assert_eq!(Exit::of_refusal(&exists), Exit::Usage);
     }
-
-    #[derive(Debug, thiserror::Error)]
-    #[error("it is at this path")]
-    struct Wrapped(#[source] io::Error);
 }

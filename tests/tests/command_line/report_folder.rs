@@ -201,7 +201,9 @@ fn a_call_that_fits_no_board_leaves_no_report() {
 #[test]
 fn a_disk_that_is_full_before_the_run_is_no_wrong_call() {
     let folder = Folder::new();
-    for (error, code) in [("ENOSPC", 3), ("EDQUOT", 3), ("EACCES", 2), ("EROFS", 2)] {
+    for (error, code) in
+        [("ENOSPC", 3), ("EDQUOT", 3), ("EIO", 3), ("EMFILE", 3), ("EACCES", 2), ("EROFS", 2)]
+    {
         let line = format!("exec strace -f -qq -o /dev/null -e inject=mkdir:error={error} \"$@\"");
         let ended = finish(&mut folder.by_shell(&line, small("verify", &["--report", "out"])));
         assert_eq!((ended.code, folder.names(".").len()), (Some(code), 0), "{error}: {ended:?}");

@@ -4,8 +4,6 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
-
 /// A folder that is removed when this is dropped, with everything in it. If it cannot be, a warning names it.
 #[derive(Debug)]
 pub(super) struct Temporary {
@@ -14,18 +12,17 @@ pub(super) struct Temporary {
 }
 
 impl Temporary {
+    /// A folder that was made just now.
+    pub(super) fn new(path: PathBuf) -> Self {
+        Self { path, stays: false }
+    }
+
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
     pub(super) fn keep(mut self) {
         self.stays = true;
-    }
-}
-
-impl From<TempDir> for Temporary {
-    fn from(dir: TempDir) -> Self {
-        Self { path: dir.keep(), stays: false }
     }
 }
 

@@ -9,10 +9,10 @@
 
 use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
-use std::fs::{self, DirEntry, File, Metadata};
+use std::fs::{self, DirBuilder, DirEntry, File, Metadata};
 use std::io;
 use std::os::unix::ffi::OsStrExt as _;
-use std::os::unix::fs::PermissionsExt as _;
+use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -109,7 +109,9 @@ pub(super) fn file(
     );
     for _ in 0..TRIES {
         let (file, noted) = made(|| {
-            let file = builder(&suffix, rights.map_or(0o666, Rights::mode)).tempfile_in(folder)?;
+            let mut options = File::options();
+            options.read(true).write(true).create_new(true).mode(rights.map_or(0o666, Rights::mode));
+            let file = builder(&suffix).make_in(folder, |path| options.open(path))?;
             let path = file.path().to_owned();
             Ok((file, path))
         })?;
@@ -125,10 +127,11 @@ pub(super) fn file(
 pub(super) fn folder(parent: &Path, rights: Option<Rights>) -> io::Result<(Temporary, File, Noted)> {
     for _ in 0..TRIES {
         let (folder, noted) = made(|| {
-            let mode = rights.map_or(0o777, Rights::mode);
-            let folder = Temporary::from(builder(OsStr::new(ASIDE), mode).tempdir_in(parent)?);
-            let path = folder.path().to_owned();
-            Ok((folder, path))
+            let mut options = DirBuilder::new();
+            options.mode(rights.map_or(0o777, Rights::mode));
+            let made = builder(OsStr::new(ASIDE)).make_in(parent, |path| options.create(path))?;
+            let path = made.into_temp_path().keep()?;
+            Ok((Temporary::new(path.clone()), path))
         })?;
         match lock::open(folder.path()) {
             Ok(held) if is_ours(&held, folder.path()) => {
@@ -142,9 +145,11 @@ pub(super) fn folder(parent: &Path, rights: Option<Rights>) -> io::Result<(Tempo
     Err(io::ErrorKind::ResourceBusy.into())
 }
 
-fn builder(suffix: &OsStr, mode: u32) -> tempfile::Builder<'static, '_> {
+/// Draws names. What `tempfile` itself makes comes with errors that hide the system's number, by which a full disk is told from a
+/// wrong place.
+fn builder(suffix: &OsStr) -> tempfile::Builder<'static, '_> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(PREFIX).rand_bytes(DRAWN).suffix(suffix).permissions(fs::Permissions::from_mode(mode));
+    builder.prefix(PREFIX).rand_bytes(DRAWN).suffix(suffix);
     builder
 }
 
