@@ -31,14 +31,14 @@ fn sound_boards_pass_with_every_sample_compared() {
 
 #[test]
 fn broken_boards_fail_and_the_broken_part_is_named() {
-    for report in run_all_on_boards(BROKEN_BOARDS) {
+    for report in run_all_on_boards(&BROKEN_BOARDS) {
         assert!(report["remedy"].is_string() || report["exit_code"] == 6, "{}", report["board"]["target"]);
     }
 }
 
 #[test]
 fn broken_boards_fail_and_the_broken_part_is_named_behind_a_grid_as_well() {
-    for report in run_all_on_boards(BROKEN_GRIDS) {
+    for report in run_all_on_boards(&BROKEN_GRIDS) {
         assert!(report["remedy"].is_string() || report["exit_code"] == 6, "{}", report["board"]["target"]);
     }
 }
@@ -94,7 +94,7 @@ fn every_fault_that_the_program_lists_has_a_scenario() {
     assert_eq!(listed, names);
     let missing = without_scenario(scenarios::all, names.iter().map(|name| format!("fault={name}")));
     assert!(missing.is_empty(), "no scenario for {missing:?}");
-    for (which, scenarios) in [("without a grid", BROKEN_BOARDS), ("behind a grid", BROKEN_GRIDS)] {
+    for (which, scenarios) in [("without a grid", &BROKEN_BOARDS), ("behind a grid", &BROKEN_GRIDS)] {
         let kinds = halfrow_mock::FAULTS.iter().flat_map(|fault| kinds(&fault.info));
         let missing = without_scenario(|| scenarios.iter(), kinds);
         assert!(missing.is_empty(), "no scenario {which} for {missing:?}");

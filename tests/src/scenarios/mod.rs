@@ -1,6 +1,7 @@
 //! All scenarios, as data: sound boards, broken boards, poor links, and calls that fit no board.
 
 mod broken_boards;
+mod broken_either_way;
 mod broken_grids;
 mod misfits;
 mod poor_links;
@@ -16,7 +17,7 @@ use crate::scenario::{On, OnSim, Scenario};
 
 /// Every scenario.
 pub fn all() -> impl Iterator<Item = &'static Scenario> {
-    let boards = [SOUND_BOARDS, BROKEN_BOARDS, BROKEN_GRIDS, MISFITS];
+    let boards = [SOUND_BOARDS, &BROKEN_BOARDS, &BROKEN_GRIDS, MISFITS];
     boards.into_iter().chain([REPAIRED_LINKS, SLOW_LINKS, HOPELESS_LINKS]).flatten()
 }
 

@@ -136,7 +136,7 @@ pub fn verify(target: &str) -> Ended {
 /// The scenarios about a board that are not of the paper's size. None is about a link: QEMU's chip stays plugged in when the link
 /// behind it breaks.
 pub fn of_boards() -> impl Iterator<Item = &'static Scenario> {
-    [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(|scenario| scenario.has_own_size())
+    [SOUND_BOARDS, &BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(|scenario| scenario.has_own_size())
 }
 
 /// Whether a scenario takes a few seconds only.

@@ -21,14 +21,14 @@ fn sound_boards_pass() {
 /// A sixth of those that fail on the mock itself.
 #[test]
 fn broken_boards_fail() {
-    let some: Vec<_> = small(BROKEN_BOARDS).into_iter().step_by(6).collect();
+    let some: Vec<_> = small(&BROKEN_BOARDS).into_iter().step_by(6).collect();
     let _ = run_all_on_serial_ports(&some);
 }
 
 #[test]
 #[ignore = "half a minute long; scripts/soak runs it"]
 fn all_broken_boards_fail() {
-    let _ = run_all_on_serial_ports(&small(BROKEN_BOARDS));
+    let _ = run_all_on_serial_ports(&small(&BROKEN_BOARDS));
 }
 
 #[test]
