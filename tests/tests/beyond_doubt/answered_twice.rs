@@ -2,28 +2,26 @@
 
 use halfrow::result::{Answer, CheckName, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
-use halfrow_mock::Options;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::RowOut;
 use halfrow_protocol::samples::{pack, unpack};
 use halfrow_protocol::{Reply, message};
-use halfrow_tests::altered::{Altered, Passing, Toward, judge};
-use halfrow_tests::system::{System, failed_check, judge_by_plan};
+use halfrow_tests::altered::{Passing, Toward, judge};
+use halfrow_tests::system::{System, failed_check};
 
-use super::rules::{broken, plan};
+use super::by_the_rules::{altering, broken};
 
 /// The report on a board where each packet that is `doubled` comes twice, and each row becomes what `alter` makes of it.
 fn doubling(
     doubled: impl Fn(Toward, &Passing) -> bool + Send + 'static,
     alter: impl Fn(Passing) -> Passing + Send + 'static,
 ) -> Report {
-    let altered = move |toward, packet: Passing| {
+    altering(move |toward, packet| {
         let is_doubled = doubled(toward, &packet);
         let packet = if packet.is(Kind::RowOut) { alter(packet) } else { packet };
         let copy = is_doubled.then(|| packet.clone());
         [packet].into_iter().chain(copy).collect()
-    };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+    })
 }
 
 fn is_reply(toward: Toward, packet: &Passing) -> bool {
@@ -75,7 +73,7 @@ fn wrong_samples_of_a_board_that_answers_twice_are_its_own() {
 #[test]
 fn a_board_that_answers_damaged_packets_fails() {
     let mut last = None;
-    let altered = move |toward: Toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         if toward == Toward::Board {
             return vec![packet];
         }
@@ -96,8 +94,7 @@ fn a_board_that_answers_damaged_packets_fails() {
                 vec![own, packet]
             }
         }
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    });
     let Finding::RuleBroken { rule, right, .. } = &report.finding else { panic!("{}", report.headline()) };
     assert_eq!((*rule, right), (Rule::Damage, &Answer::Nothing {}));
 }

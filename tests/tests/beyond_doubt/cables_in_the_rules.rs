@@ -7,14 +7,13 @@ use std::time::Duration;
 use halfrow::link::{Candidate, Link};
 use halfrow::result::{Counter, Finding, Report};
 use halfrow::verdict::Verdict;
-use halfrow_mock::Options;
 use halfrow_protocol::message::{ResetLevel, RowOut, Status, Welcome};
 use halfrow_protocol::{Damage, Decoder, Kind, Reply};
-use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::altered::{Passing, Toward};
 use halfrow_tests::system::{judge_by_plan, open};
 use halfrow_tests::through::Through;
 
-use super::rules::plan;
+use super::by_the_rules::{altering, plan};
 use crate::outages::changed;
 
 /// Where a greeting says which host it is of (WIRE.md, 00).
@@ -140,7 +139,7 @@ fn another_host_may_have_the_board_after_a_silence_of_the_cable() {
 fn no_packet_has_the_number_of_a_session_that_is_yet_to_come() {
     let (opened, sent) = (Arc::new(Mutex::new(Vec::new())), Arc::new(Mutex::new(Vec::new())));
     let (opens, sends) = (Arc::clone(&opened), Arc::clone(&sent));
-    let alter = move |toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         let mut opened = opens.lock().unwrap();
         match packet.reply() {
             Some(Reply::Hello(Welcome { session, .. }))
@@ -152,8 +151,7 @@ fn no_packet_has_the_number_of_a_session_that_is_yet_to_come() {
             _ => {}
         }
         vec![packet]
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+    });
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let (opened, sent) = (opened.lock().unwrap(), sent.lock().unwrap());
     assert!(opened.len() > 4 && sent.iter().any(|(_, session)| !opened.contains(session)), "{opened:?}");
@@ -167,7 +165,7 @@ fn no_packet_has_the_number_of_a_session_that_is_yet_to_come() {
 fn a_greeting_that_comes_again_behind_each_close_makes_no_sound_board_fail() {
     for is_next in [true, false] {
         let (mut greeting, mut late) = (None, None);
-        let alter = move |toward, packet: Passing| {
+        let report = altering(move |toward, packet| {
             if toward == Toward::Host {
                 return vec![packet];
             }
@@ -181,8 +179,7 @@ fn a_greeting_that_comes_again_behind_each_close_makes_no_sound_board_fail() {
             }
             let behind = if is_next { late.take() } else { None };
             copy.into_iter().chain([packet]).chain(behind).collect()
-        };
-        let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+        });
         assert_eq!(report.verdict(), Verdict::Error, "{is_next}: {}", report.headline());
         assert!(report.headline().contains("may have reached it twice"), "{}", report.headline());
     }
@@ -206,7 +203,7 @@ fn doubled(sessions: usize) -> impl FnMut(Toward, &Passing) -> bool {
 #[test]
 fn a_doubt_of_an_earlier_session_holds_in_those_that_the_rules_open() {
     let (mut is_doubled, mut first, mut is_spoilt) = (doubled(1), None, false);
-    let alter = move |toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         if is_doubled(toward, &packet) {
             return vec![packet.clone(), packet];
         }
@@ -218,8 +215,7 @@ fn a_doubt_of_an_earlier_session_holds_in_those_that_the_rules_open() {
             return vec![packet];
         }
         vec![changed(&packet, |row| RowOut { generation: row.generation ^ 1, ..row })]
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+    });
     assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
 }
@@ -228,7 +224,7 @@ fn a_doubt_of_an_earlier_session_holds_in_those_that_the_rules_open() {
 #[test]
 fn a_count_that_every_reset_clears_fails_also_over_a_cable_that_doubles_a_request() {
     let (mut is_doubled, mut is_reset, mut cleared) = (doubled(usize::MAX), false, 0);
-    let alter = move |toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         if is_doubled(toward, &packet) {
             return vec![packet.clone(), packet];
         }
@@ -243,8 +239,7 @@ fn a_count_that_every_reset_clears_fails_also_over_a_cable_that_doubles_a_reques
             cleared = status.rows_in;
         }
         vec![packet.saying(&Reply::Status(Status { rows_in: status.rows_in - cleared, ..status }))]
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+    });
     let Finding::CounterWrong { counter, .. } = &report.finding else { panic!("{}", report.headline()) };
     assert_eq!((report.verdict(), *counter), (Verdict::Fail, Counter::RowsIn), "{}", report.headline());
 }

@@ -13,7 +13,7 @@ use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
 use halfrow_protocol::{Encoder, Header};
 use halfrow_tests::system::judge_by_plan;
 
-use super::rules::{broken, plan};
+use super::by_the_rules::{broken, plan};
 
 /// What a decoder does not check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

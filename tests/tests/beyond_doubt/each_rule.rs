@@ -7,8 +7,7 @@ use halfrow_protocol::message::{BurstMode, BurstState, Records, ResetLevel, RowO
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward};
 
-use super::rule_by_rule::altering;
-use super::rules::{carried_out, refusal};
+use super::by_the_rules::{altering, carried_out, refusal};
 
 /// What a board does to packets, either way.
 type Misconduct = Box<dyn FnMut(Toward, Passing) -> Vec<Passing> + Send>;

@@ -9,6 +9,7 @@ mod anywhere;
 mod asked_again;
 mod at_speed;
 mod before_outages;
+mod by_the_rules;
 mod cables_in_the_rules;
 mod capabilities;
 mod careless;

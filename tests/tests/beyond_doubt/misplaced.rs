@@ -9,7 +9,7 @@ use halfrow_protocol::{Packet, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
-use super::rules::plan;
+use super::by_the_rules::altering;
 
 /// The number of the frame that brings tables into effect for a burst.
 const ACTIVATING: u16 = u16::MAX;
@@ -44,7 +44,7 @@ fn rows(packet: &Passing) -> Option<u16> {
 fn forgetting_the_last(nth: usize) -> (Report, usize) {
     let (sender, configured) = std::sync::mpsc::channel();
     let (mut times, mut height) = (0, 0);
-    let altered = move |toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         if let Some(rows) = rows(&packet).filter(|_| toward == Toward::Board) {
             height = rows;
             if rows == 2 {
@@ -59,8 +59,7 @@ fn forgetting_the_last(nth: usize) -> (Report, usize) {
             }
             _ => vec![packet],
         }
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    });
     (report, configured.iter().count())
 }
 

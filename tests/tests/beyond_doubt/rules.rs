@@ -9,13 +9,10 @@ use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
 
+use super::by_the_rules::{altering, broken, plan, refusal, said_by};
+
 /// The number of the frame in which rows are sent out of order.
 const FRAME: u16 = 0x1234;
-
-/// The smallest run with the rules.
-pub(super) fn plan() -> Plan {
-    Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() }
-}
 
 fn check(report: &Report) -> &Check {
     report.checks.iter().find(|check| check.name == CheckName::Rules).unwrap()
@@ -24,41 +21,6 @@ fn check(report: &Report) -> &Check {
 /// The report on a board after `alter` changed everything that it sends; none drops a packet.
 fn saying(alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static) -> Report {
     said_by(&Options::default(), alter)
-}
-
-/// Like [`saying`], for a board of the build `options`.
-pub(super) fn said_by(
-    options: &Options,
-    mut alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static,
-) -> Report {
-    let altered = move |toward, packet| match toward {
-        Toward::Board => vec![packet],
-        Toward::Host => alter(packet).into_iter().collect(),
-    };
-    judge_by_plan(&plan(), Altered::new(options, altered).candidate())
-}
-
-pub(super) fn refusal(packet: &Passing) -> Option<Refusal> {
-    match packet.reply() {
-        Some(Reply::Refusal(refusal)) => Some(refusal),
-        _ => None,
-    }
-}
-
-/// The empty reply that says that the request was carried out, instead of this refusal.
-pub(super) fn carried_out(packet: &Passing, refusal: Refusal) -> Passing {
-    let mut header = packet.header;
-    header.kind = refusal.kind;
-    Passing { header, payload: Vec::new() }
-}
-
-pub(super) fn broken(report: &Report) -> (Rule, &Answer, &Answer) {
-    assert_eq!(failed_check(report), Some(CheckName::Rules), "{}", report.headline());
-    assert!(report.remedy().is_some());
-    match &report.finding {
-        Finding::RuleBroken { rule, right, found, .. } => (*rule, right, found),
-        other => panic!("{}", other.sentence()),
-    }
 }
 
 #[test]
@@ -238,12 +200,11 @@ fn a_board_that_took_a_row_and_says_that_none_is_inside_is_told_of() {
 /// Both copies of a request may be lost, too; then nothing is reported of the board.
 #[test]
 fn a_link_that_loses_what_must_be_refused_does_not() {
-    let alter = |toward, packet: Passing| {
+    let report = altering(|toward, packet| {
         let is_short_row = packet.is(Kind::RowIn) && packet.payload.len() > 14 + 96;
         let lost = toward == Toward::Board && is_short_row;
         if lost { Vec::new() } else { vec![packet] }
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+    });
     assert_eq!(
         (report.verdict(), check(&report).outcome),
         (Verdict::Error, Outcome::Error),

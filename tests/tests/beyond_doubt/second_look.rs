@@ -8,10 +8,10 @@ use halfrow_mock::Options;
 use halfrow_protocol::message::{FrameRecord, Records, Refusal, RefusalCode, RowOut};
 use halfrow_protocol::{Kind, Packet, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
-use halfrow_tests::system::{System, judge_by_plan};
+use halfrow_tests::system::System;
 
+use crate::by_the_rules::altering;
 use crate::conduct::fails;
-use crate::rules::plan;
 
 /// In the first session alone: in another one all would be right.
 #[test]
@@ -165,7 +165,7 @@ fn what_a_link_did_to_one_burst_casts_no_doubt_on_a_later_one() {
 #[test]
 fn what_is_right_when_it_is_tried_again_leaves_no_certainty_behind() {
     let (mut configured, mut slips, mut is_over) = (false, 0, false);
-    let alter = move |toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         if toward == Toward::Board {
             is_over |= slips > 1 && packet.is(Kind::Hello);
             // STATUS clears with any number but 0; the rules send another one than 1.
@@ -188,8 +188,7 @@ fn what_is_right_when_it_is_tried_again_leaves_no_certainty_behind() {
             }
             _ => vec![packet],
         }
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+    });
     assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{:?}", report.finding);
     assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
 }

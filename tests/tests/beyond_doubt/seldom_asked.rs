@@ -1,52 +1,12 @@
 //! Boards that are wrong only in what no host asks: each breaks one rule, which the smallest run with the rules finds.
 
 use halfrow::board::RefusalCode;
-use halfrow::result::{Answer, CheckName, Counter, Finding, Report, Rule};
-use halfrow_mock::Options;
-use halfrow_protocol::message::{Refusal, Status, TrappedRow};
+use halfrow::result::{Answer, Counter, Rule};
+use halfrow_protocol::message::{Status, TrappedRow};
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::{Altered, Passing, Toward};
-use halfrow_tests::system::{failed_check, judge_by_plan};
+use halfrow_tests::altered::Toward;
 
-use super::rules::{broken, plan};
-
-/// The report on a board with packets that `alter` changes.
-fn altering(mut alter: impl FnMut(Toward, &mut Passing) + Send + 'static) -> Report {
-    let altered = move |toward, mut packet| {
-        alter(toward, &mut packet);
-        vec![packet]
-    };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
-}
-
-/// The report on a board whose answer to a request of `kind`, if its payload `is_meant`, `alter` changes.
-fn answering(
-    kind: Kind,
-    is_meant: impl Fn(&[u8]) -> bool + Send + 'static,
-    alter: impl Fn(&mut Passing) + Send + 'static,
-) -> Report {
-    let mut meant = None;
-    altering(move |toward, packet| {
-        if toward == Toward::Board {
-            meant = (packet.is(kind) && is_meant(&packet.payload)).then_some(packet.header.sequence);
-        } else if meant == Some(packet.header.sequence) && !packet.is(Kind::RowOut) {
-            alter(packet);
-        }
-    })
-}
-
-/// The same with an answer that is a refusal.
-fn refusing(kind: Kind, is_meant: impl Fn(&[u8]) -> bool + Send + 'static, code: RefusalCode) -> Report {
-    answering(kind, is_meant, move |packet| {
-        *packet = packet.saying(&Reply::Refusal(Refusal { code, kind: kind.code(), detail: 0 }));
-    })
-}
-
-fn miscounted(report: &Report) -> Counter {
-    assert_eq!(failed_check(report), Some(CheckName::Rules), "{}", report.headline());
-    let Finding::CounterWrong { counter, .. } = report.finding else { panic!("{}", report.headline()) };
-    counter
-}
+use super::by_the_rules::{altering_each, answering, broken, miscounted, refusing};
 
 /// The width of a row (WIRE.md, 20).
 fn width(row: &[u8]) -> usize {
@@ -97,7 +57,7 @@ const BANK: usize = 1;
 #[test]
 fn a_commit_makes_the_banks_change_places() {
     let (mut generation, mut has_changed, mut asked) = (0, false, None);
-    let report = altering(move |toward, packet| {
+    let report = altering_each(move |toward, packet| {
         if toward == Toward::Board {
             has_changed &= !packet.is(Kind::TableWrite) && !packet.is(Kind::Reset);
             let is_of_shadow = packet.is(Kind::TableCrc) && packet.payload.get(BANK) == Some(&0);
@@ -116,7 +76,7 @@ const VERSIONS: std::ops::Range<usize> = 8..10;
 
 #[test]
 fn a_host_that_speaks_no_version_of_the_boards_gets_no_session() {
-    let report = altering(|toward, packet| {
+    let report = altering_each(|toward, packet| {
         if toward == Toward::Board && packet.is(Kind::Hello) {
             packet.payload[VERSIONS].fill(1);
         }
@@ -143,7 +103,7 @@ const MODE: usize = 16;
 #[test]
 fn every_bit_of_a_number_of_frames_counts() {
     for bytes in [2, 3] {
-        let report = altering(move |toward, packet| {
+        let report = altering_each(move |toward, packet| {
             if toward == Toward::Board
                 && packet.is(Kind::Burst)
                 && packet.payload.get(FRAMES) != Some(&[!0; 4])
@@ -158,7 +118,7 @@ fn every_bit_of_a_number_of_frames_counts() {
 #[test]
 fn rows_of_a_burst_are_in_no_counter() {
     let (mut of_bursts, mut clears) = (0, false);
-    let report = altering(move |toward, packet| {
+    let report = altering_each(move |toward, packet| {
         if toward == Toward::Board {
             of_bursts += 4 * u32::from(packet.is(Kind::Burst));
             clears = packet.is(Kind::Status) && packet.payload != [0];
@@ -174,7 +134,7 @@ fn rows_of_a_burst_are_in_no_counter() {
 #[test]
 fn a_burst_that_sets_no_trap_leaves_what_is_in_it() {
     let mut mode = 0;
-    let report = altering(move |toward, packet| {
+    let report = altering_each(move |toward, packet| {
         if toward == Toward::Board && packet.is(Kind::Burst) && packet.payload.len() > MODE {
             mode = packet.payload[MODE];
         }
@@ -188,7 +148,7 @@ fn a_burst_that_sets_no_trap_leaves_what_is_in_it() {
 #[test]
 fn what_is_expected_of_rows_stays_when_a_session_ends() {
     let mut is_told = false;
-    let report = altering(move |toward, packet| {
+    let report = altering_each(move |toward, packet| {
         is_told = packet.is(Kind::Expect) || is_told && !packet.is(Kind::Hello);
         if let Some(Reply::Trap(Some(kept))) = packet.reply()
             && toward == Toward::Host

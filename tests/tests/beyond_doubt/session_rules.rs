@@ -13,39 +13,18 @@ use halfrow_mock::{Board, Options};
 use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
 use halfrow_protocol::message::{Refusal, RefusalCode, Reset, ResetLevel, Status};
 use halfrow_protocol::{Decoder, Header, Kind, Packet, Reply, Request, VERSION};
-use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::altered::{Passing, Toward};
 use halfrow_tests::system::{failed_check, judge_by_plan, open};
 
-use super::rules::{broken, plan};
+use super::by_the_rules::{altering, altering_each, broken, counting, miscounted, plan};
 
 /// The report on a board that receives the host's packets as `alter` changes them.
 fn hearing(mut alter: impl FnMut(&mut Passing) + Send + 'static) -> Report {
-    let altered = move |toward, mut packet| {
+    altering_each(move |toward, packet| {
         if toward == Toward::Board {
-            alter(&mut packet);
+            alter(packet);
         }
-        vec![packet]
-    };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
-}
-
-/// The report on a board whose counters `alter` changes.
-fn counting(mut alter: impl FnMut(Status) -> Status + Send + 'static) -> Report {
-    let altered = move |toward, packet: Passing| match packet.reply() {
-        Some(Reply::Status(status)) if toward == Toward::Host => {
-            vec![packet.saying(&Reply::Status(alter(status)))]
-        }
-        _ => vec![packet],
-    };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
-}
-
-fn miscounted(report: &Report) -> Counter {
-    assert_eq!(failed_check(report), Some(CheckName::Rules), "{}", report.headline());
-    match &report.finding {
-        Finding::CounterWrong { counter, .. } => *counter,
-        other => panic!("{}", other.sentence()),
-    }
+    })
 }
 
 /// A greeting's nonce and host (WIRE.md, 00).
@@ -81,18 +60,16 @@ fn a_held_board_must_let_itself_be_taken_over() {
 #[test]
 fn a_greeting_that_is_repeated_must_open_no_session() {
     let (mut greetings, mut again) = (Vec::new(), 0);
-    let altered = move |toward, mut packet: Passing| {
+    let report = altering_each(move |toward, packet| {
         if toward == Toward::Board && packet.is(Kind::Hello) {
-            let own = greeting(&packet);
+            let own = greeting(packet);
             again = greetings.iter().filter(|&&earlier| earlier == own).count();
             greetings.push(own);
         }
         if packet.is(Kind::Hello) {
             packet.payload[3] ^= (again as u8) << 4;
         }
-        vec![packet]
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    });
     let (rule, right, found) = broken(&report);
     assert_eq!(rule, Rule::NewSession);
     assert!(
@@ -110,16 +87,14 @@ const SERIAL: usize = 14;
 /// after the first answer, or to those with another nonce.
 fn naming_itself(at: usize, meant: [bool; 2]) -> Report {
     let mut first = None;
-    let altered = move |toward, mut packet: Passing| {
+    altering_each(move |toward, packet| {
         if toward == Toward::Host && packet.is(Kind::Hello) {
             let nonce = packet.payload[..4].to_vec();
             let is_first = first.is_none();
             let is_another = *first.get_or_insert_with(|| nonce.clone()) != nonce;
             packet.payload[at] ^= u8::from(!is_first && meant[usize::from(is_another)]);
         }
-        vec![packet]
-    };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+    })
 }
 
 #[test]
@@ -137,7 +112,7 @@ fn a_board_must_say_each_time_who_it_is() {
 fn in_the_place_of_another(other: fn(&mut Passing)) -> Report {
     const NOBODYS: u16 = 0x4242;
     let (mut first, mut session) = (None, 0);
-    let altered = move |toward, mut packet: Passing| {
+    altering(move |toward, mut packet| {
         let Some((nonce, host)) = greeting(&packet).filter(|_| toward == Toward::Board) else {
             if toward == Toward::Host && packet.is(Kind::Hello) {
                 session = packet.payload[9];
@@ -154,8 +129,7 @@ fn in_the_place_of_another(other: fn(&mut Passing)) -> Report {
         let opens = nonce != own && host == holder && packet.payload[8..10] == [VERSION; 2];
         let resets = opens.then_some(reset);
         resets.into_iter().chain([packet]).collect()
-    };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+    })
 }
 
 /// Two builds of one commit may have different banks, and a board that was given no serial number has that of all others.
@@ -204,7 +178,7 @@ fn what_another_session_says_that_it_has_must_free_no_bank() {
 #[test]
 fn tables_must_stay_after_a_greeting() {
     let mut greetings = 0;
-    let altered = move |toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         greetings += usize::from(toward == Toward::Host && packet.is(Kind::Hello));
         match packet.reply() {
             Some(Reply::Status(status)) if toward == Toward::Host && greetings > 1 && status.rows_in == 0 => {
@@ -212,14 +186,13 @@ fn tables_must_stay_after_a_greeting() {
             }
             _ => vec![packet],
         }
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    });
     assert_eq!(miscounted(&report), Counter::Generation);
 }
 
 #[test]
 fn rows_that_are_not_needed_must_be_counted() {
-    let report = counting(|status| Status { rows_unneeded: 0, ..status });
+    let report = counting(|status| status.rows_unneeded = 0);
     assert_eq!(miscounted(&report), Counter::RowsUnneeded);
 }
 
@@ -256,7 +229,7 @@ fn a_row_that_is_taken_where_it_must_be_refused_is_told_of_though_nothing_is_sai
 fn another_host_may_take_a_board_whose_session_is_closed() {
     let (mut opened, mut is_closed, refused) = (0, false, Arc::new(AtomicUsize::new(0)));
     let seen = Arc::clone(&refused);
-    let altered = move |toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
         match (toward, request) {
             (Toward::Board, Ok(Request::Reset(Reset { level: ResetLevel::Session, .. }))) => is_closed = true,
@@ -271,8 +244,7 @@ fn another_host_may_take_a_board_whose_session_is_closed() {
             _ => {}
         }
         vec![packet]
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    });
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert!(refused.load(Ordering::Relaxed) > 0);
 }
@@ -289,7 +261,7 @@ fn payload(request: &Request<'_>) -> Vec<u8> {
 fn a_board_that_loses_its_power_while_another_host_asks_for_it_is_asked_again() {
     const NOBODYS: u16 = 0x4242;
     let (mut own, mut session, mut is_lost) = (None, 0, false);
-    let altered = move |toward, packet: Passing| {
+    let report = altering(move |toward, packet| {
         if toward == Toward::Host {
             return Vec::from_iter((packet.header.sequence != NOBODYS).then_some(packet));
         }
@@ -307,8 +279,7 @@ fn a_board_that_loses_its_power_while_another_host_asks_for_it_is_asked_again() 
             Passing { header, payload: payload(&reset) }
         });
         resets.into_iter().chain([packet]).collect()
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    });
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
 
@@ -358,7 +329,7 @@ fn a_station_that_is_frozen_while_another_host_asks_for_the_board_makes_no_board
 #[test]
 fn a_repeated_greeting_must_be_answered_in_its_session_over_a_link_that_loses_packets_too() {
     let (mut own, mut copies) = (None, 0);
-    let altered = move |toward, mut packet: Passing| {
+    let report = altering(move |toward, mut packet| {
         if toward == Toward::Host && packet.is(Kind::Hello) {
             let nonce = packet.payload[..4].to_vec();
             let is_first = own.is_none();
@@ -369,7 +340,6 @@ fn a_repeated_greeting_must_be_answered_in_its_session_over_a_link_that_loses_pa
             }
         }
         vec![packet]
-    };
-    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    });
     assert_eq!(broken(&report).0, Rule::NewSession, "{}", report.headline());
 }

@@ -8,8 +8,7 @@ use halfrow_protocol::message::Refusal;
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward};
 
-use super::rule_by_rule::altering;
-use super::rules::refusal;
+use super::by_the_rules::{altering, refusal};
 
 fn asked(report: &Report) -> (Rule, &Asked) {
     match &report.finding {

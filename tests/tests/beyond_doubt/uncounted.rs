@@ -8,10 +8,9 @@ use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::{Altered, Passing, Toward};
-use halfrow_tests::system::judge_by_plan;
+use halfrow_tests::altered::{Passing, Toward};
 
-use super::rules::plan;
+use super::by_the_rules::altering;
 
 /// Rows that are given to a board whose output banks are full.
 const WAITING: u32 = 2;
@@ -21,15 +20,14 @@ fn counting(
     mut alter: impl FnMut(&mut Status) + Send + 'static,
     lost: impl Fn(&Passing) -> bool + Send + 'static,
 ) -> Report {
-    let altered = move |toward, packet: Passing| match packet.reply() {
+    altering(move |toward, packet| match packet.reply() {
         Some(Reply::Status(mut status)) if toward == Toward::Host => {
             alter(&mut status);
             vec![packet.saying(&Reply::Status(status))]
         }
         _ if toward == Toward::Board && lost(&packet) => Vec::new(),
         _ => vec![packet],
-    };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+    })
 }
 
 /// The counter that is wrong, by how much, and the rule; and why that is not the board's.

@@ -11,8 +11,9 @@ use halfrow_protocol::{Header, Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims_by};
 use halfrow_tests::system::judge_by_plan;
 
-use super::rule_by_rule::{altering, answering, hearing};
-use super::rules::{broken, carried_out, plan, refusal, said_by};
+use super::by_the_rules::{
+    altering, altering_each, answering, broken, carried_out, hearing, plan, refusal, refusing, said_by,
+};
 
 /// The kinds of which an empty packet is no answer to a request of the same kind; and the one that is refused only when the session
 /// is closed, where no counter tells what a link did.
@@ -109,7 +110,7 @@ fn entries_and_signatures_that_are_cut_short_are_not_written() {
 #[test]
 fn a_commit_with_a_v_of_0_is_of_row_factors() {
     let refusal = Refusal { code: RefusalCode::Range, kind: Kind::Commit.code(), detail: 2 };
-    let refused = move |packet: Passing| packet.saying(&Reply::Refusal(refusal));
+    let refused = move |packet: &mut Passing| *packet = packet.saying(&Reply::Refusal(refusal));
     let report = answering(Kind::Commit, |payload| payload.get(SHAPE) == Some(&[0, u8::MAX]), refused);
     assert_eq!(broken(&report).0, Rule::NoGrid);
 }
@@ -188,11 +189,10 @@ fn the_last_number_of_all_is_no_rows() {
 #[test]
 fn a_row_says_how_often_it_came_before() {
     for bit in 0..7 {
-        let report = altering(move |toward, mut packet| {
+        let report = altering_each(move |toward, packet| {
             if toward == Toward::Host && packet.is(Kind::RowOut) {
                 packet.payload[18] &= !(1 << bit);
             }
-            vec![packet]
         });
         assert_eq!(report.verdict(), Verdict::Fail, "{bit}: {}", report.headline());
     }
@@ -200,9 +200,7 @@ fn a_row_says_how_often_it_came_before() {
 
 #[test]
 fn the_port_of_a_write_is_not_looked_at() {
-    let refusal = Refusal { code: RefusalCode::Range, kind: Kind::TableWrite.code(), detail: 0 };
-    let refused = move |packet: Passing| packet.saying(&Reply::Refusal(refusal));
-    let report = answering(Kind::TableWrite, |payload| payload.get(2) > Some(&1), refused);
+    let report = refusing(Kind::TableWrite, |payload| payload.get(2) > Some(&1), RefusalCode::Range);
     assert_eq!(broken(&report).0, Rule::Address);
 }
 

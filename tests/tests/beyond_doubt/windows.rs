@@ -9,8 +9,7 @@ use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward, judge, judge_each};
 use halfrow_tests::system::System;
 
-use super::rule_by_rule::altering;
-use super::rules::{broken, carried_out, refusal, said_by};
+use super::by_the_rules::{altering, broken, carried_out, refusal, said_by};
 
 /// Where a RESET names the row that the board then waits for (WIRE.md, 03).
 const NEXT_ROW: std::ops::Range<usize> = 1..5;
