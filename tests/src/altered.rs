@@ -11,8 +11,8 @@ use halfrow::result::Report;
 use halfrow::target::BoardKind;
 use halfrow_mock::{Board, Options};
 use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
-use halfrow_protocol::message::Capabilities;
-use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply};
+use halfrow_protocol::message::{Capabilities, FrameRecord, Records, RowOut};
+use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply, Request};
 
 use crate::system::{System, judge_by_plan};
 
@@ -47,12 +47,43 @@ impl Passing {
         Reply::read(&Packet { header: self.header, payload: &self.payload }).ok()
     }
 
+    /// The request in it, if it is one.
+    #[must_use]
+    pub fn request(&self) -> Option<Request<'_>> {
+        Request::read(&Packet { header: self.header, payload: &self.payload }).ok()
+    }
+
     /// The same packet with another reply in it, of that reply's kind.
     #[must_use]
     pub fn saying(&self, reply: &Reply<'_>) -> Self {
         let mut payload = Vec::new();
         reply.write(&mut payload);
         Self { header: Header { kind: reply.kind().code(), ..self.header }, payload }
+    }
+
+    /// The same packet after `change` was made to its row and that row's samples, if it holds a row that comes back.
+    #[must_use]
+    pub fn with_row(&self, change: impl FnOnce(&mut RowOut<'_>, &mut Vec<u8>)) -> Self {
+        let Some(Reply::RowOut(mut row)) = self.reply() else { return self.clone() };
+        let mut packed = row.packed.to_vec();
+        change(&mut row, &mut packed);
+        self.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))
+    }
+
+    /// The same packet after `change`, which is given the frame of the first of them, was made to its records, if it holds some.
+    #[must_use]
+    pub fn with_records(&self, change: impl FnOnce(u32, &mut Vec<FrameRecord>)) -> Self {
+        let Some(Reply::Records(found)) = self.reply() else { return self.clone() };
+        let mut records: Vec<_> = found.records().collect();
+        change(found.from, &mut records);
+        let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
+        self.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
+    }
+
+    /// The same packet under another sequence number.
+    #[must_use]
+    pub fn numbered(self, sequence: u16) -> Self {
+        Self { header: Header { sequence, ..self.header }, ..self }
     }
 }
 

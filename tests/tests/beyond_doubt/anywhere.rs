@@ -9,8 +9,8 @@ use halfrow::result::Report;
 use halfrow::run::{Plan, RunOptions, Vary, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
+use halfrow_protocol::Request;
 use halfrow_protocol::message::{Bank, Span};
-use halfrow_protocol::{Packet, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::{System, open, streamed};
@@ -68,8 +68,8 @@ fn a_sound_board_that_comes_back_passes_where_the_link_breaks_between_frames() {
         let (is_cut, mut asked) = (Arc::new(AtomicBool::new(false)), 0);
         let cut = Arc::clone(&is_cut);
         let alter = move |toward, packet: Passing| {
-            let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-            if let (Toward::Board, Ok(Request::TableCrc(Span { bank: Bank::Active, .. }))) = (toward, request)
+            if let (Toward::Board, Some(Request::TableCrc(Span { bank: Bank::Active, .. }))) =
+                (toward, packet.request())
             {
                 cut.fetch_or(asked == which, Ordering::Relaxed);
                 asked += 1;

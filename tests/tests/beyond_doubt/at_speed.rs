@@ -11,7 +11,7 @@ use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::message::{BurstMode, BurstState, FrameRecord, Records, Request};
-use halfrow_protocol::{Kind, Packet, Reply};
+use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims, judge_each};
 use halfrow_tests::system::{System, failed_check, streamed};
 
@@ -23,15 +23,6 @@ fn check(report: &Report) -> &Check {
     report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap()
 }
 
-/// A packet of records after `change` was made to them.
-fn with_records(packet: &Passing, change: impl FnOnce(u32, BurstState, &mut Vec<FrameRecord>)) -> Passing {
-    let Some(Reply::Records(found)) = packet.reply() else { panic!("no records") };
-    let mut records: Vec<_> = found.records().collect();
-    change(found.from, found.state, &mut records);
-    let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
-    packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
-}
-
 /// The report on a board after `change` was made to its record of frame 1 of its first burst.
 fn with_record(change: impl Fn(&mut FrameRecord) + Send + 'static) -> Report {
     let mut done = false;
@@ -39,7 +30,7 @@ fn with_record(change: impl Fn(&mut FrameRecord) + Send + 'static) -> Report {
         if done || toward == Toward::Board || !packet.is(Kind::Records) {
             return packet;
         }
-        with_records(&packet, |from, _, records| {
+        packet.with_records(|from, records| {
             let place = 1_usize.checked_sub(from as usize);
             if let Some(record) = place.and_then(|place| records.get_mut(place)) {
                 change(record);
@@ -47,11 +38,6 @@ fn with_record(change: impl Fn(&mut FrameRecord) + Send + 'static) -> Report {
             }
         })
     })
-}
-
-/// The request in a packet.
-fn request(packet: &Passing) -> Request<'_> {
-    Request::read(&Packet { header: packet.header, payload: &packet.payload }).unwrap()
 }
 
 #[test]
@@ -145,7 +131,7 @@ fn every_count_of_a_record_is_compared() {
 fn records_of_more_frames_than_were_asked_for_are_a_fault() {
     let report = judge_each(&TINY, |toward, packet| match toward {
         Toward::Host if packet.is(Kind::Records) => {
-            with_records(&packet, |_, _, records| records.extend(records.last().copied()))
+            packet.with_records(|_, records| records.extend(records.last().copied()))
         }
         _ => packet,
     });
@@ -295,7 +281,7 @@ fn frames_of_the_other_tables_are_known_by_their_signatures() {
     let report = judge_each(&TINY, |toward, mut packet| {
         if toward == Toward::Board
             && packet.is(Kind::Burst)
-            && matches!(request(&packet), Request::Burst(burst) if burst.mode == BurstMode::Alternating)
+            && matches!(packet.request(), Some(Request::Burst(burst)) if burst.mode == BurstMode::Alternating)
         {
             packet.payload[16] = BurstMode::Fresh as u8;
         }
@@ -316,7 +302,10 @@ fn frames_of_the_other_tables_are_known_by_their_signatures() {
 fn a_row_that_changes_on_its_way_in_is_not_said_to_be_computed_wrongly() {
     let report = judge_each(&TINY, |toward, mut packet| {
         if toward == Toward::Board
-            && matches!(request(&packet), Request::RowIn(row) if row.place.frame == 2 && row.place.row == 3)
+            && matches!(
+                packet.request(),
+                Some(Request::RowIn(row)) if row.place.frame == 2 && row.place.row == 3
+            )
         {
             // The samples follow the place. Whatever they are, this changes them.
             packet.payload[12..].iter_mut().for_each(|byte| *byte ^= 0x11);
@@ -375,8 +364,8 @@ fn a_burst_that_comes_late_is_not_the_bitstreams_fault() {
         if toward == Toward::Host || !packet.is(Kind::Burst) || is_sent {
             return vec![packet];
         }
-        let name = |packet: &Passing| match request(packet) {
-            Request::Burst(burst) => burst.burst,
+        let name = |packet: &Passing| match packet.request() {
+            Some(Request::Burst(burst)) => burst.burst,
             other => panic!("{other:?}"),
         };
         match late.take() {

@@ -9,13 +9,13 @@ use halfrow::progress::Silent;
 use halfrow::result::{Finding, Report};
 use halfrow::run::{RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
-use halfrow_protocol::message::{Refusal, RefusalCode, RowOut, RowPlace};
+use halfrow_protocol::message::{Refusal, RefusalCode};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::System;
 
-use crate::outages::{board as sound, breakable, changed};
+use crate::outages::{board as sound, breakable};
 
 /// Which replies are meant.
 type Meant = fn(&Reply<'_>) -> bool;
@@ -91,10 +91,7 @@ fn a_wrong_sum_of_a_table_is_not_forgotten_when_the_link_breaks_after_it() {
 
 /// As a board that was never given it would send.
 fn never_given(packet: &Passing) -> Passing {
-    changed(packet, |row| {
-        let row_sequence = row.place.row_sequence + 1000;
-        RowOut { place: RowPlace { row_sequence, ..row.place }, ..row }
-    })
+    packet.with_row(|row, _| row.place.row_sequence += 1000)
 }
 
 #[test]

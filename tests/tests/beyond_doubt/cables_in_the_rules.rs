@@ -7,14 +7,13 @@ use std::time::Duration;
 use halfrow::link::{Candidate, Link};
 use halfrow::result::{Counter, Finding, Report};
 use halfrow::verdict::Verdict;
-use halfrow_protocol::message::{ResetLevel, RowOut, Status, Welcome};
+use halfrow_protocol::message::{ResetLevel, Status, Welcome};
 use halfrow_protocol::{Damage, Decoder, Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward};
 use halfrow_tests::system::{judge_by_plan, open};
 use halfrow_tests::through::Through;
 
 use super::by_the_rules::{altering, plan};
-use crate::outages::changed;
 
 /// Where a greeting says which host it is of (WIRE.md, 00).
 const HOST: std::ops::Range<usize> = 4..8;
@@ -214,7 +213,7 @@ fn a_doubt_of_an_earlier_session_holds_in_those_that_the_rules_open() {
         if std::mem::replace(&mut is_spoilt, true) {
             return vec![packet];
         }
-        vec![changed(&packet, |row| RowOut { generation: row.generation ^ 1, ..row })]
+        vec![packet.with_row(|row, _| row.generation ^= 1)]
     });
     assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());

@@ -33,16 +33,6 @@ fn place(packet: &Passing) -> Option<RowPlace> {
     }
 }
 
-/// A ROW_OUT packet under the sequence number `number`, after `change` was made to its row.
-fn changed(packet: &Passing, number: u16, change: impl FnOnce(&mut RowOut<'_>, &mut Vec<u8>)) -> Passing {
-    let Some(Reply::RowOut(mut row)) = packet.reply() else { panic!("no row") };
-    let mut packed = row.packed.to_vec();
-    change(&mut row, &mut packed);
-    let mut other = packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }));
-    other.header.sequence = number;
-    other
-}
-
 #[test]
 fn a_board_whose_replies_have_no_flag_is_understood() {
     passes(&judge_each(&System::TINY, |_, mut packet| {
@@ -65,7 +55,10 @@ fn rows_are_no_answers_whatever_their_number() {
         }
         let is_answer = toward == Toward::Host && packet.is(Kind::Status);
         match last.take_if(|row| is_answer && packet.header.sequence > row.header.sequence + 256) {
-            Some(row) => vec![changed(&row, packet.header.sequence, |row, _| row.repeats = u16::MAX), packet],
+            Some(row) => {
+                let again = row.with_row(|row, _| row.repeats = u16::MAX);
+                vec![again.numbered(packet.header.sequence), packet]
+            }
             None => vec![packet],
         }
     }));
@@ -81,7 +74,7 @@ fn with_another(change: fn(&mut RowOut<'_>, &mut Vec<u8>)) -> Report {
             return vec![packet];
         }
         extra += 1;
-        let another = changed(&packet, packet.header.sequence.wrapping_add(1), change);
+        let another = packet.with_row(change).numbered(packet.header.sequence.wrapping_add(1));
         vec![packet, another]
     })
 }
@@ -181,7 +174,7 @@ fn a_board_that_does_not_count_repeats_is_not_said_to_reorder_rows() {
                 lost += 1;
                 Vec::new()
             }
-            Some(_) => vec![changed(&packet, packet.header.sequence, |row, _| row.repeats = 0)],
+            Some(_) => vec![packet.with_row(|row, _| row.repeats = 0)],
             _ => vec![packet],
         });
         let sentence = format!("the board sent row {row} of frame 0 twice with `repeats` = 0");
@@ -192,7 +185,7 @@ fn a_board_that_does_not_count_repeats_is_not_said_to_reorder_rows() {
 #[test]
 fn gaps_are_compared_with_their_seed() {
     let report = judge_each(&System::TINY, |_, packet| match place(&packet) {
-        Some(at) if at.row == 5 => changed(&packet, packet.header.sequence, |row, _| row.pauses += 1),
+        Some(at) if at.row == 5 => packet.with_row(|row, _| row.pauses += 1),
         _ => packet,
     });
     fails(&report, CheckName::Counters, "the board counts 1 board clock of gaps");
@@ -201,7 +194,7 @@ fn gaps_are_compared_with_their_seed() {
 /// The report on a board after `change` was made to each row that `is_meant`.
 fn with_rows(is_meant: fn(&RowPlace) -> bool, change: fn(&mut RowOut<'_>)) -> Report {
     judge_each(&System::TINY, move |_, packet| match place(&packet) {
-        Some(at) if is_meant(&at) => changed(&packet, packet.header.sequence, |row, _| change(row)),
+        Some(at) if is_meant(&at) => packet.with_row(|row, _| change(row)),
         _ => packet,
     })
 }
@@ -348,8 +341,7 @@ fn what_is_wrong_is_no_fail_while_the_board_does_not_tell_what_came_to_it() {
             }
             match place(&packet) {
                 Some(place) if toward == Toward::Host && place.row_sequence == 5 => {
-                    let number = packet.header.sequence;
-                    vec![changed(&packet, number, |_, packed| packed[0] ^= 1)]
+                    vec![packet.with_row(|_, packed| packed[0] ^= 1)]
                 }
                 _ => vec![packet],
             }
@@ -369,8 +361,7 @@ fn samples_that_the_depth_cannot_hold_are_kept_and_explained() {
     let tables = plan.tables.with_settings(BitDepth::Eight, centre2).unwrap();
     let alter = move |_, packet: Passing| match place(&packet) {
         Some(place) => {
-            let number = packet.header.sequence;
-            vec![changed(&packet, number, |_, packed| {
+            vec![packet.with_row(|_, packed| {
                 let mut row = vec![0; place.width.into()];
                 samples::unpack(packed, &mut row);
                 row.iter_mut().for_each(|sample| *sample |= 1 << 9);

@@ -71,11 +71,7 @@ fn naming_the_last_commit() -> Misconduct {
 
 fn spoiling_wide_rows() -> Misconduct {
     saying(|packet| match packet.reply()? {
-        Reply::RowOut(row) if row.place.width == 2048 => {
-            let mut packed = row.packed.to_vec();
-            packed[3] ^= 4;
-            Some(packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row })))
-        }
+        Reply::RowOut(row) if row.place.width == 2048 => Some(packet.with_row(|_, packed| packed[3] ^= 4)),
         _ => None,
     })
 }

@@ -6,7 +6,7 @@ use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_model::{BitDepth, Camera, Equidistant, Geometry, GridShape};
 use halfrow_protocol::message::{FrameRecord, Records, Request};
-use halfrow_protocol::{Kind, Packet, Reply};
+use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
@@ -78,15 +78,14 @@ fn a_board_gets_the_blanking_that_it_names_for_narrow_rows_of_a_grid() {
     let (mut is_grid, mut is_narrow, mut rows, mut frames) = (false, false, 0, 0);
     let alter = move |toward, mut packet: Passing| {
         let is_close = is_grid && is_narrow && rows < GRID_BLANKING;
-        let read = Packet { header: packet.header, payload: &packet.payload };
-        match (toward, Request::read(&read), packet.reply()) {
-            (Toward::Board, Ok(Request::Commit(commit)), _) => {
+        match (toward, packet.request(), packet.reply()) {
+            (Toward::Board, Some(Request::Commit(commit)), _) => {
                 is_grid = commit.shape.is_some_and(|shape| shape.v > 0);
             }
-            (Toward::Board, Ok(Request::Configure(settings)), _) => {
+            (Toward::Board, Some(Request::Configure(settings)), _) => {
                 (is_narrow, rows) = (settings.width < GRID_WIDTH, settings.blanking);
             }
-            (Toward::Board, Ok(Request::Burst(burst)), _) => frames = burst.frame_blanking,
+            (Toward::Board, Some(Request::Burst(burst)), _) => frames = burst.frame_blanking,
             (Toward::Host, _, Some(Reply::RowOut(_))) if is_close => packet.payload[SAMPLES] ^= 5,
             (Toward::Host, _, Some(Reply::Records(found)))
                 if is_close || is_grid && is_narrow && frames < GRID_BLANKING =>

@@ -14,7 +14,7 @@ use halfrow::verdict::{Cause, StoppedBy};
 use halfrow_mock::Options;
 use halfrow_model::{Frame, Kernel, Phase, TableSet};
 use halfrow_protocol::message::{Hello, Reset, ResetLevel, Welcome};
-use halfrow_protocol::{Packet, Reply, Request};
+use halfrow_protocol::{Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::{System, open};
@@ -110,13 +110,12 @@ fn an_answer_to_an_old_greeting_opens_no_session() {
 fn sessions(options: &RunOptions, is_stopped: Arc<AtomicBool>) -> (Report, Vec<Hello>, usize) {
     let (sender, said) = std::sync::mpsc::channel();
     let alter = move |toward, packet: Passing| {
-        let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        match (toward, request) {
-            (Toward::Board, Ok(Request::Hello(hello))) => sender.send(Some(hello)).unwrap(),
-            (Toward::Board, Ok(Request::Reset(Reset { level: ResetLevel::Session, .. }))) => {
+        match (toward, packet.request()) {
+            (Toward::Board, Some(Request::Hello(hello))) => sender.send(Some(hello)).unwrap(),
+            (Toward::Board, Some(Request::Reset(Reset { level: ResetLevel::Session, .. }))) => {
                 sender.send(None).unwrap();
             }
-            (Toward::Board, Ok(Request::RowIn(_))) => is_stopped.store(true, Ordering::Relaxed),
+            (Toward::Board, Some(Request::RowIn(_))) => is_stopped.store(true, Ordering::Relaxed),
             _ => {}
         }
         vec![packet]
@@ -166,11 +165,11 @@ fn whoever_has_a_board_that_comes_back_keeps_it() {
     let board = move || {
         let (cut, seen) = (Arc::clone(&cut), Arc::clone(&seen));
         let alter = move |toward, packet: Passing| {
-            match Request::read(&Packet { header: packet.header, payload: &packet.payload }) {
-                Ok(Request::Hello(hello)) if toward == Toward::Board => {
+            match packet.request() {
+                Some(Request::Hello(hello)) if toward == Toward::Board => {
                     seen.lock().unwrap().push(hello);
                 }
-                Ok(Request::RowIn(_)) if toward == Toward::Board => cut.store(true, Ordering::Relaxed),
+                Some(Request::RowIn(_)) if toward == Toward::Board => cut.store(true, Ordering::Relaxed),
                 _ => {}
             }
             vec![packet]

@@ -4,8 +4,8 @@ use halfrow::result::{CheckName, Finding, PlacedRow, Report};
 use halfrow::run::{Part, Plan, Selection};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
+use halfrow_protocol::Reply;
 use halfrow_protocol::message::{Configuration, Request, RowOut};
-use halfrow_protocol::{Packet, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
@@ -33,8 +33,8 @@ fn at_speed() -> Plan {
 
 /// The rows of the board's next configuration.
 fn rows(packet: &Passing) -> Option<u16> {
-    match Request::read(&Packet { header: packet.header, payload: &packet.payload }) {
-        Ok(Request::Configure(Configuration { height, .. })) => Some(height),
+    match packet.request() {
+        Some(Request::Configure(Configuration { height, .. })) => Some(height),
         _ => None,
     }
 }

@@ -11,7 +11,7 @@ use halfrow::result::{CheckName, Finding, Outcome, Report, SoakLength};
 use halfrow::run::{AtSpeed, Plan, RunOptions, Vary, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
-use halfrow_protocol::message::{Capabilities, Records, RowOut, Welcome};
+use halfrow_protocol::message::{Capabilities, Records, Welcome};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
@@ -31,20 +31,7 @@ enum Wrong {
 
 /// The packet with a wrong bit, if it is a row that comes back.
 fn spoilt(packet: &Passing) -> Passing {
-    let mut packed = match packet.reply() {
-        Some(Reply::RowOut(row)) => row.packed.to_vec(),
-        _ => Vec::new(),
-    };
-    packed.iter_mut().take(1).for_each(|byte| *byte ^= 1);
-    changed(packet, |row| RowOut { packed: &packed, ..row })
-}
-
-/// A row that comes back as `change` makes it.
-pub(crate) fn changed<'a>(packet: &'a Passing, change: impl FnOnce(RowOut<'a>) -> RowOut<'a>) -> Passing {
-    match packet.reply() {
-        Some(Reply::RowOut(row)) => packet.saying(&Reply::RowOut(change(row))),
-        _ => packet.clone(),
-    }
+    packet.with_row(|_, packed| packed[0] ^= 1)
 }
 
 /// A link to a board that is just switched on; if `wrong`, its rows are spoilt.
@@ -137,10 +124,10 @@ fn unplugged_behind_the_fifth_row(
 #[test]
 fn what_rows_said_of_themselves_before_a_link_broke_counts_in_a_session_that_is_whole_alone() {
     let spoils: [fn(&Passing) -> Passing; 4] = [
-        |packet| changed(packet, |row| RowOut { generation: row.generation ^ 3, ..row }),
-        |packet| changed(packet, |row| RowOut { first_latency: row.first_latency + 1, ..row }),
-        |packet| changed(packet, |row| RowOut { pauses: row.pauses + 1, ..row }),
-        |packet| changed(packet, |row| RowOut { entered: row.entered.map(|crc| crc ^ 1), ..row }),
+        |packet| packet.with_row(|row, _| row.generation ^= 3),
+        |packet| packet.with_row(|row, _| row.first_latency += 1),
+        |packet| packet.with_row(|row, _| row.pauses += 1),
+        |packet| packet.with_row(|row, _| row.entered = row.entered.map(|crc| crc ^ 1)),
     ];
     for spoil in spoils {
         let report = unplugged_behind_the_fifth_row(spoil, Some(Box::new(|| Ok(board(false)))), Some(LIMIT));

@@ -10,8 +10,8 @@ use halfrow::link::{Candidate, Link, LinkError, Reopener};
 use halfrow::progress::Silent;
 use halfrow::result::{Finding, Report};
 use halfrow::run::{RunOptions, verify};
+use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Hello, Request};
-use halfrow_protocol::{Kind, Packet};
 use halfrow_tests::altered::{Passing, Toward};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::{System, streamed};
@@ -27,8 +27,7 @@ fn breaking_at(kind: Kind, greetings: &Greetings) -> Candidate {
     let is_cut = Arc::new(AtomicBool::new(false));
     let (cut, greetings) = (Arc::clone(&is_cut), Arc::clone(greetings));
     let alter = move |toward, packet: Passing| {
-        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        if let (Toward::Board, Ok(Request::Hello(Hello { nonce, .. }))) = (toward, read) {
+        if let (Toward::Board, Some(Request::Hello(Hello { nonce, .. }))) = (toward, packet.request()) {
             greetings.lock().unwrap().push((packet.header.sequence, nonce));
         }
         cut.fetch_or(toward == Toward::Host && packet.is(kind), Ordering::Relaxed);

@@ -282,18 +282,15 @@ fn a_row_that_comes_again_with_other_fields_fails() {
     let told = ["its first", "its last", "pauses of", "the CRC of", "1 wrong sample", "a count of 3 repeats"];
     for (field, told) in told.into_iter().enumerate() {
         let report = altering(move |toward, packet| match packet.reply() {
-            Some(Reply::RowOut(mut row)) if toward == Toward::Host && row.repeats > 1 => {
-                let mut packed = row.packed.to_vec();
-                match field {
+            Some(Reply::RowOut(row)) if toward == Toward::Host && row.repeats > 1 => {
+                vec![packet.with_row(|row, packed| match field {
                     0 => row.first_latency ^= 1,
                     1 => row.last_latency ^= 1,
                     2 => row.pauses ^= 1,
                     3 => row.entered = row.entered.map(|crc| crc ^ 1),
                     4 => packed[0] ^= 1,
                     _ => row.repeats += 1,
-                }
-                row.packed = &packed;
-                vec![packet.saying(&Reply::RowOut(row))]
+                })]
             }
             _ => vec![packet],
         });

@@ -216,13 +216,11 @@ fn a_link_that_loses_what_must_be_refused_does_not() {
 #[test]
 fn a_row_that_comes_back_wrong_after_what_was_refused_fails() {
     let report = saying(|packet| {
-        let Some(Reply::RowOut(row)) = packet.reply() else { return Some(packet) };
-        if row.place.frame != FRAME || row.place.row != 2 {
-            return Some(packet);
-        }
-        let mut packed = row.packed.to_vec();
-        packed[3] ^= 4;
-        Some(packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row })))
+        Some(packet.with_row(|row, packed| {
+            if row.place.frame == FRAME && row.place.row == 2 {
+                packed[3] ^= 4;
+            }
+        }))
     });
     let right = Answer::Row { row: 2, frame: FRAME };
     let (rule, must, Answer::OtherRow { differs }) = broken(&report) else { panic!("{}", report.headline()) };
@@ -266,11 +264,11 @@ fn what_a_row_says_wrongly_of_itself_is_told() {
     ];
     for (change, is_meant, told) in statements {
         let report = saying(move |packet| {
-            let Some(Reply::RowOut(mut row)) = packet.reply() else { return Some(packet) };
-            if row.place.frame == FRAME && row.place.row == 2 {
-                change(&mut row);
-            }
-            Some(packet.saying(&Reply::RowOut(row)))
+            Some(packet.with_row(|row, _| {
+                if row.place.frame == FRAME && row.place.row == 2 {
+                    change(row);
+                }
+            }))
         });
         let (.., Answer::OtherRow { differs }) = broken(&report) else { panic!("{}", report.headline()) };
         let [part] = &**differs else { panic!("{differs:?}") };

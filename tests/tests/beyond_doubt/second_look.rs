@@ -5,8 +5,8 @@ use halfrow::result::{CheckName, Counter, Finding, Report, SoakLength};
 use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
-use halfrow_protocol::message::{FrameRecord, Records, Refusal, RefusalCode, RowOut};
-use halfrow_protocol::{Kind, Packet, Reply, Request};
+use halfrow_protocol::message::{Refusal, RefusalCode};
+use halfrow_protocol::{Kind, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
 use halfrow_tests::system::System;
 
@@ -89,10 +89,8 @@ fn wrong_by_turns(sessions: &'static [(Wrong, bool)]) -> Report {
             return is_doubled.then(|| packet.clone()).into_iter().chain([packet]).collect();
         }
         match packet.reply() {
-            Some(Reply::RowOut(row)) if wrong == Wrong::Rows => {
-                let mut packed = row.packed.to_vec();
-                packed[0] ^= 1;
-                vec![packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))]
+            Some(Reply::RowOut(_)) if wrong == Wrong::Rows => {
+                vec![packet.with_row(|_, packed| packed[0] ^= 1)]
             }
             _ if is_setting && wrong == Wrong::Answer => {
                 let refusal = Refusal { code: RefusalCode::Busy, kind: Kind::Configure.code(), detail: 0 };
@@ -131,26 +129,22 @@ fn what_a_link_did_to_one_burst_casts_no_doubt_on_a_later_one() {
     let board = Altered::new(
         &Options { pixel_clock: 10_000, ..Options::default() },
         move |toward, packet: Passing| {
-            let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-            if let (Toward::Board, Ok(Request::Burst(burst))) = (toward, read) {
+            if let (Toward::Board, Some(Request::Burst(burst))) = (toward, packet.request()) {
                 let is_first = bursts.is_empty();
                 if !bursts.contains(&burst.burst) {
                     bursts.push(burst.burst);
                 }
                 return is_first.then(|| packet.clone()).into_iter().chain([packet]).collect();
             }
-            match packet.reply() {
-                Some(Reply::Records(found)) if toward == Toward::Host && bursts.len() == 3 && !is_spoilt => {
-                    let mut records: Vec<_> = found.records().collect();
-                    records.iter_mut().take(1).for_each(|record| {
-                        record.signature ^= 1;
-                        is_spoilt = true;
-                    });
-                    let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
-                    vec![packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))]
-                }
-                _ => vec![packet],
+            if toward == Toward::Board || bursts.len() != 3 || is_spoilt {
+                return vec![packet];
             }
+            vec![packet.with_records(|_, records| {
+                records.iter_mut().take(1).for_each(|record| {
+                    record.signature ^= 1;
+                    is_spoilt = true;
+                });
+            })]
         },
     );
     let soak = AtSpeed::Soak(SoakLength::Frames { frames: 4000 });
@@ -181,10 +175,8 @@ fn what_is_right_when_it_is_tried_again_leaves_no_certainty_behind() {
                 status.rows_in = 1;
                 vec![packet.saying(&Reply::Status(status))]
             }
-            Some(Reply::RowOut(row)) if slips > 1 && !is_over => {
-                let mut packed = row.packed.to_vec();
-                packed[0] ^= 1;
-                vec![packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))]
+            Some(Reply::RowOut(_)) if slips > 1 && !is_over => {
+                vec![packet.with_row(|_, packed| packed[0] ^= 1)]
             }
             _ => vec![packet],
         }

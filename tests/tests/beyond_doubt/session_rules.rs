@@ -230,10 +230,11 @@ fn another_host_may_take_a_board_whose_session_is_closed() {
     let (mut opened, mut is_closed, refused) = (0, false, Arc::new(AtomicUsize::new(0)));
     let seen = Arc::clone(&refused);
     let report = altering(move |toward, packet| {
-        let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        match (toward, request) {
-            (Toward::Board, Ok(Request::Reset(Reset { level: ResetLevel::Session, .. }))) => is_closed = true,
-            (Toward::Board, Ok(Request::Hello(_))) => opened += usize::from(is_closed),
+        match (toward, packet.request()) {
+            (Toward::Board, Some(Request::Reset(Reset { level: ResetLevel::Session, .. }))) => {
+                is_closed = true;
+            }
+            (Toward::Board, Some(Request::Hello(_))) => opened += usize::from(is_closed),
             (Toward::Host, _) if packet.is(Kind::Hello) && opened > 0 => {
                 let held = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: 90 };
                 let mut refusal = packet.saying(&Reply::Refusal(held));

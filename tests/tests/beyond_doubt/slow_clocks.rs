@@ -11,8 +11,8 @@ use halfrow::result::{Check, CheckName, Finding, NotExercised, Report};
 use halfrow::run::{Part, Plan, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
+use halfrow_protocol::Reply;
 use halfrow_protocol::message::{BurstState, FrameRecord, Records, Request};
-use halfrow_protocol::{Packet, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
@@ -67,9 +67,8 @@ fn board_of(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Candid
     let (now, mut begun) = (Arc::clone(&clock), BTreeMap::new());
     let alter = move |toward, packet: Passing| {
         let now = now.load(Ordering::Relaxed);
-        let read = Packet { header: packet.header, payload: &packet.payload };
-        match (toward, Request::read(&read), packet.reply()) {
-            (Toward::Board, Ok(Request::Burst(burst)), _) if (1..=FEW).contains(&burst.frames) => {
+        match (toward, packet.request(), packet.reply()) {
+            (Toward::Board, Some(Request::Burst(burst)), _) if (1..=FEW).contains(&burst.frames) => {
                 let takes = takes(begun.len());
                 begun.entry(burst.burst).or_insert((now, takes));
             }
@@ -130,9 +129,8 @@ fn beginning_late(late: u64) -> Report {
     let (mut of, mut full_since, mut in_time) = ((0, 0), None, BTreeSet::new());
     let alter = move |toward, packet: Passing| {
         let now = now.load(Ordering::Relaxed);
-        let read = Packet { header: packet.header, payload: &packet.payload };
-        match (toward, Request::read(&read), packet.reply()) {
-            (Toward::Board, Ok(Request::Records { from }), _)
+        match (toward, packet.request(), packet.reply()) {
+            (Toward::Board, Some(Request::Records { from }), _)
                 if from > of.1
                     && from <= of.1 + kept
                     && full_since.take().is_some_and(|since| now - since < late) =>

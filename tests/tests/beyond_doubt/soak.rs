@@ -17,8 +17,8 @@ use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
 use halfrow_cli::text;
 use halfrow_mock::Options;
-use halfrow_protocol::message::{BurstState, FrameRecord, Records, Request};
-use halfrow_protocol::{Kind, Packet, Reply};
+use halfrow_protocol::message::{BurstState, Records, Request};
+use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::program::Folder;
@@ -63,8 +63,7 @@ fn soak(report: &Report) -> &SoakReport {
 fn seeds_of(length: SoakLength) -> (Report, Vec<u32>) {
     let (sender, seeds) = std::sync::mpsc::channel();
     let board = Altered::new(&slow(), move |toward, packet: Passing| {
-        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        if let (Toward::Board, Ok(Request::Burst(burst))) = (toward, read) {
+        if let (Toward::Board, Some(Request::Burst(burst))) = (toward, packet.request()) {
             sender.send(burst.seed).unwrap();
         }
         vec![packet]
@@ -211,8 +210,7 @@ fn without_frames(pixel_clock: u32, length: SoakLength) -> Report {
     let mut state = BurstState::UnderWay;
     let options = Options { pixel_clock, ..Options::default() };
     let board = Altered::new(&options, move |toward, packet: Passing| {
-        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        if let (Toward::Board, Ok(Request::Burst(burst))) = (toward, read) {
+        if let (Toward::Board, Some(Request::Burst(burst))) = (toward, packet.request()) {
             state = if burst.frames == 0 { BurstState::Ended } else { BurstState::UnderWay };
         }
         match packet.reply() {
@@ -321,15 +319,10 @@ fn over_a_link_that_loses(every: usize, spoilt: bool) -> Report {
         if answers % every == 0 {
             return Vec::new();
         }
-        match packet.reply() {
-            Some(Reply::Records(found)) if spoilt => {
-                let mut records: Vec<_> = found.records().collect();
-                records.iter_mut().for_each(|record| record.signature ^= 1);
-                let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
-                vec![packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))]
-            }
-            _ => vec![packet],
+        if !spoilt {
+            return vec![packet];
         }
+        vec![packet.with_records(|_, records| records.iter_mut().for_each(|record| record.signature ^= 1))]
     });
     soaked_by(board.candidate(), frames(5000), &RunOptions::default())
 }

@@ -12,8 +12,8 @@ use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Finding, Outcome, Report};
 use halfrow::run::{Provenance, RunOptions, SessionIds, verify};
 use halfrow::verdict::{StoppedBy, Verdict};
-use halfrow_protocol::message::{Refusal, RefusalCode, RowOut, Status};
-use halfrow_protocol::{Kind, Packet, Reply, Request};
+use halfrow_protocol::message::{Refusal, RefusalCode, Status};
+use halfrow_protocol::{Kind, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
 use halfrow_tests::through::Through;
@@ -205,8 +205,7 @@ impl FirstSession {
         if packet.is(Kind::Status) {
             self.asked.fetch_add(1, Ordering::Relaxed);
         }
-        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        let Ok(Request::Configure(configuration)) = read else { return vec![packet] };
+        let Some(Request::Configure(configuration)) = packet.request() else { return vec![packet] };
         let before = self.before.replace(packet.clone()).filter(|_| configuration.gap_seed != 0);
         self.old = self.old.or(before.as_ref().map(|before| before.header.sequence));
         [packet].into_iter().chain(before.filter(|_| self.is_stale)).collect()
@@ -226,10 +225,8 @@ impl FirstSession {
         match packet.reply() {
             Some(Reply::Status(_)) if ends => self.end(&packet),
             Some(Reply::Configure) if self.is_stale && self.old == Some(packet.header.sequence) => Vec::new(),
-            Some(Reply::RowOut(row)) if self.old.is_some() && !self.is_stale => {
-                let mut packed = row.packed.to_vec();
-                packed[0] ^= 1;
-                vec![packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))]
+            Some(Reply::RowOut(_)) if self.old.is_some() && !self.is_stale => {
+                vec![packet.with_row(|_, packed| packed[0] ^= 1)]
             }
             _ => vec![packet],
         }
@@ -287,8 +284,7 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail_that_goes_away_later() {
     let is_cut = Arc::new(AtomicBool::new(false));
     let (cuts, mut before, mut left) = (Arc::clone(&is_cut), None, None);
     let alter = move |toward, packet: Passing| {
-        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        let (Toward::Board, Ok(Request::Configure(configuration))) = (toward, read) else {
+        let (Toward::Board, Some(Request::Configure(configuration))) = (toward, packet.request()) else {
             left = left.map(|left: u32| left.saturating_sub(u32::from(packet.is(Kind::RowOut))));
             cuts.fetch_or(left == Some(0), Ordering::Relaxed);
             return vec![packet];

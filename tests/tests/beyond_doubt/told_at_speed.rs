@@ -14,8 +14,8 @@ use halfrow::result::{
 use halfrow::run::{AtSpeed, Part, Plan, RunOptions, Selection, verify};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_protocol::message::{FrameRecord, Records, TrappedRow};
-use halfrow_protocol::{Kind, Packet, Reply, Request};
+use halfrow_protocol::message::{FrameRecord, TrappedRow};
+use halfrow_protocol::{Kind, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge_each};
 use halfrow_tests::system::{System, judge_by_plan};
 
@@ -23,24 +23,20 @@ use halfrow_tests::system::{System, judge_by_plan};
 fn with_record(which: usize, change: fn(&mut FrameRecord)) -> impl FnMut(Toward, Passing) -> Passing + Send {
     let (mut names, mut is_done) = (Vec::new(), false);
     move |toward, packet| {
-        let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        if let (Toward::Board, Ok(Request::Burst(burst))) = (toward, request)
+        if let (Toward::Board, Some(Request::Burst(burst))) = (toward, packet.request())
             && !names.contains(&burst.burst)
         {
             names.push(burst.burst);
         }
-        match packet.reply() {
-            Some(Reply::Records(found)) if toward == Toward::Host && names.len() == which && !is_done => {
-                let mut records: Vec<_> = found.records().collect();
-                records.iter_mut().take(1).for_each(|record| {
-                    change(record);
-                    is_done = true;
-                });
-                let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
-                packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
-            }
-            _ => packet,
+        if toward == Toward::Board || names.len() != which || is_done {
+            return packet;
         }
+        packet.with_records(|_, records| {
+            records.iter_mut().take(1).for_each(|record| {
+                change(record);
+                is_done = true;
+            });
+        })
     }
 }
 
@@ -153,11 +149,8 @@ fn signed_otherwise() -> Report {
             packet.payload.iter_mut().rev().take(4).for_each(|byte| *byte ^= 0xff);
         }
         match packet.reply() {
-            Some(Reply::Records(found)) if toward == Toward::Host => {
-                let mut records: Vec<_> = found.records().collect();
-                records.iter_mut().for_each(|record| record.signature ^= 1);
-                let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
-                packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
+            Some(Reply::Records(_)) if toward == Toward::Host => {
+                packet.with_records(|_, records| records.iter_mut().for_each(|record| record.signature ^= 1))
             }
             Some(Reply::Trap(Some(kept))) => {
                 packet.saying(&Reply::Trap(Some(TrappedRow { signature: !kept.signature, ..kept })))
@@ -185,20 +178,16 @@ fn a_right_row_under_another_signature_shows_that_it_is_signed_wrongly() {
 /// The report on a board whose records of a burst each hold the signature of the frame before.
 fn with_signatures_of_frames_before() -> Report {
     let mut last = (0, 0);
-    judge_each(&System::TINY, move |_, packet| match packet.reply() {
-        Some(Reply::Records(found)) => {
-            let mut records: Vec<_> = found.records().collect();
-            for (n, record) in (found.from..).zip(&mut records) {
+    judge_each(&System::TINY, move |_, packet| {
+        packet.with_records(|from, records| {
+            for (n, record) in (from..).zip(records) {
                 let own = record.signature;
                 if n > 0 && last.0 == n - 1 {
                     record.signature = last.1;
                 }
                 last = (n, own);
             }
-            let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
-            packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
-        }
-        _ => packet,
+        })
     })
 }
 
@@ -278,8 +267,7 @@ fn a_host_that_has_many_records_to_judge_does_not_fall_silent() {
     let seen = Arc::clone(&asked);
     let options = Options { records: 1024, ..Options::default() };
     let board = Altered::new(&options, move |toward, packet: Passing| {
-        let read = Packet { header: packet.header, payload: &packet.payload };
-        if let (Toward::Board, Ok(Request::Records { from })) = (toward, Request::read(&read)) {
+        if let (Toward::Board, Some(Request::Records { from })) = (toward, packet.request()) {
             seen.lock().unwrap().push(from);
         }
         vec![packet]

@@ -10,7 +10,7 @@ use halfrow::run::{RunOptions, Vary, verify};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{Bank, ResetLevel, RowOut, RowPlace};
-use halfrow_protocol::{Kind, Packet, Reply, Request};
+use halfrow_protocol::{Kind, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::{System, failed_check, judge_by_plan, open, streamed};
@@ -32,12 +32,11 @@ fn place(packet: &Passing) -> Option<RowPlace> {
 
 /// A row once more, under the next number, said to have been sent before, with another sample.
 fn another(packet: &Passing) -> Passing {
-    let Some(Reply::RowOut(row)) = packet.reply() else { panic!("no row") };
-    let mut packed = row.packed.to_vec();
-    packed[0] ^= 1;
-    let mut other = packet.saying(&Reply::RowOut(RowOut { packed: &packed, repeats: 1, ..row }));
-    other.header.sequence = packet.header.sequence.wrapping_add(1);
-    other
+    let other = packet.with_row(|row, packed| {
+        packed[0] ^= 1;
+        row.repeats = 1;
+    });
+    other.numbered(packet.header.sequence.wrapping_add(1))
 }
 
 #[test]
@@ -106,8 +105,8 @@ fn a_row_that_comes_behind_all_rules_is_the_board_s_fault() {
         if place(&packet).is_some_and(|at| at.frame > PLANNED) {
             row = Some(packet.clone());
         }
-        let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        if let (Toward::Board, Ok(Request::Reset(reset)), true) = (toward, request, row.is_some()) {
+        if let (Toward::Board, Some(Request::Reset(reset)), true) = (toward, packet.request(), row.is_some())
+        {
             is_last |= is_closed && reset.level == ResetLevel::Tables;
             is_closed |= reset.level == ResetLevel::Session;
         }
@@ -155,8 +154,7 @@ fn tables_in_use_are_read_back_before_they_are_replaced_and_at_the_end() {
     let asked = Arc::new(AtomicUsize::new(0));
     let seen = Arc::clone(&asked);
     let count = move |toward, packet: Passing| {
-        let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
-        if let (Toward::Board, Ok(Request::TableCrc(span))) = (toward, request) {
+        if let (Toward::Board, Some(Request::TableCrc(span))) = (toward, packet.request()) {
             seen.fetch_add(usize::from(span.bank == Bank::Active), Ordering::Relaxed);
         }
         vec![packet]
