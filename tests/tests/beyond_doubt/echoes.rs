@@ -8,54 +8,33 @@ use halfrow::run::{Part, Plan, Selection};
 use halfrow::target::BoardKind;
 use halfrow::verdict::Verdict;
 use halfrow_tests::system::{System, judge_by_plan, open};
+use halfrow_tests::through::Through;
 
 /// What is reported of a line that echoes.
 const SAID: &str = "the line returns what is sent to it";
 
-/// A link whose line echoes once `left` bytes have been sent.
-struct Echoes {
-    link: Box<dyn Link>,
-    left: usize,
-    /// Whether the board still gets what is sent.
-    beside: bool,
-}
-
-impl Link for Echoes {
-    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
-        if self.left > 0 {
-            let taken = self.link.exchange(out, back, wait)?;
-            self.left = self.left.saturating_sub(taken);
+/// The report on a sound board, with the wire's rules, whose line echoes once it was sent `after` bytes; with `beside`, the board
+/// still gets what is sent.
+fn echoing(after: usize, beside: bool) -> Report {
+    let plan = Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
+    let candidate = open("mock");
+    let mut left = after;
+    let link = Through::boxed(candidate.link, move |link, out, back, wait| {
+        if left > 0 {
+            let taken = link.exchange(out, back, wait)?;
+            left = left.saturating_sub(taken);
             return Ok(taken);
         }
-        if !self.beside && !out.is_empty() {
+        if !beside && !out.is_empty() {
             back.extend(out);
             return Ok(out.len());
         }
         let mut said = Vec::new();
-        let taken = self.link.exchange(out, &mut said, wait)?;
+        let taken = link.exchange(out, &mut said, wait)?;
         back.extend(&out[..taken]);
         back.extend(said);
         Ok(taken)
-    }
-
-    fn now(&self) -> Duration {
-        self.link.now()
-    }
-
-    fn bytes_per_second(&self) -> Option<f64> {
-        None
-    }
-
-    fn name(&self) -> String {
-        "a line that echoes".to_owned()
-    }
-}
-
-/// The report on a sound board, with the wire's rules, whose line echoes once it was sent `after` bytes.
-fn echoing(after: usize, beside: bool) -> Report {
-    let plan = Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
-    let candidate = open("mock");
-    let link = Box::new(Echoes { link: candidate.link, left: after, beside });
+    });
     judge_by_plan(&plan, Candidate { link, ..candidate })
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use halfrow::link::{Candidate, Link, LinkError};
+use halfrow::link::Candidate;
 use halfrow::result::{Check, CheckName, Finding, NotExercised, Report};
 use halfrow::run::{Part, Plan, Selection};
 use halfrow::verdict::Verdict;
@@ -15,6 +15,7 @@ use halfrow_protocol::Reply;
 use halfrow_protocol::message::{BurstState, FrameRecord, Records, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan};
+use halfrow_tests::through::Through;
 
 /// 10 kHz, in Hz.
 const CLOCK: u32 = 10_000;
@@ -25,34 +26,18 @@ const FEW: u32 = 3;
 /// The time between two zeros.
 const BETWEEN: Duration = Duration::from_millis(2);
 
-/// A link that inserts a zero now and then while nothing else comes.
-struct Trickles {
-    link: Box<dyn Link>,
-    /// The time on its clock, in milliseconds, for the board.
-    clock: Arc<AtomicU64>,
-}
-
-impl Link for Trickles {
-    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
-        let taken = self.link.exchange(out, back, wait.min(BETWEEN))?;
-        self.clock.store(self.link.now().as_millis() as u64, Ordering::Relaxed);
+/// `candidate` behind a link that inserts a zero now and then while nothing else comes, and that tells `clock` the time on its own, in
+/// milliseconds.
+fn trickling(candidate: Candidate, clock: Arc<AtomicU64>) -> Candidate {
+    let link = Through::boxed(candidate.link, move |link, out, back, wait| {
+        let taken = link.exchange(out, back, wait.min(BETWEEN))?;
+        clock.store(link.now().as_millis() as u64, Ordering::Relaxed);
         if taken == 0 && back.is_empty() && wait >= BETWEEN {
             back.push(0);
         }
         Ok(taken)
-    }
-
-    fn now(&self) -> Duration {
-        self.link.now()
-    }
-
-    fn bytes_per_second(&self) -> Option<f64> {
-        None
-    }
-
-    fn name(&self) -> String {
-        "a link with zeros between packets".to_owned()
-    }
+    });
+    Candidate { link, ..candidate }
 }
 
 /// A sound board that makes few frames as slowly as its clock demands. The mock alone would take no time.
@@ -91,9 +76,7 @@ fn board_of(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Candid
         vec![packet]
     };
     let options = Options { pixel_clock: CLOCK, ..Options::default() };
-    let candidate = Altered::new(&options, alter).candidate();
-    let link = Box::new(Trickles { link: candidate.link, clock });
-    Candidate { link, ..candidate }
+    trickling(Altered::new(&options, alter).candidate(), clock)
 }
 
 #[track_caller]
@@ -154,10 +137,9 @@ fn beginning_late(late: u64) -> Report {
         }
         vec![packet]
     };
-    let candidate = Altered::new(&options, alter).candidate();
-    let link = Box::new(Trickles { link: candidate.link, clock });
+    let candidate = trickling(Altered::new(&options, alter).candidate(), clock);
     let plan = Plan { selection: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
-    judge_by_plan(&plan, Candidate { link, ..candidate })
+    judge_by_plan(&plan, candidate)
 }
 
 #[test]
