@@ -48,8 +48,7 @@ fn fitted_kernels_gain_on_the_photographs_of_table_1() {
     let images = first.parent().unwrap().to_str().unwrap();
     for (name, expected) in GAINS {
         let call = ["kernel", "measure", "--json", "-q", "--kernel", name, "--images", images];
-        let ended = Folder::new().halfrow(call);
-        assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+        let ended = Folder::new().halfrow(call).succeeded();
         let report: Value = serde_json::from_str(&ended.stdout).unwrap();
         let found = report["gains_db"].as_array().unwrap();
         assert_eq!(found.len(), expected.len(), "{name}");
@@ -144,8 +143,7 @@ fn train(folder: &Folder, more: &[&str]) -> Ended {
 #[test]
 fn a_trained_kernel_tells_where_it_comes_from_and_is_the_same_every_time() {
     let folder = folder_of_pictures();
-    let ended = train(&folder, &["-o", "mine.json"]);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let ended = train(&folder, &["-o", "mine.json"]).succeeded();
     assert!(ended.stdout.starts_with("2 photographs: "), "{}", ended.stdout);
     let mine = folder.read("mine.json");
     let file: Value = serde_json::from_slice(&mine).unwrap();
@@ -163,9 +161,9 @@ fn a_trained_kernel_tells_where_it_comes_from_and_is_the_same_every_time() {
     let refused = train(&folder, &["-o", "mine.json"]);
     assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);
     assert!(refused.stderr.contains("allow it to be overwritten (--overwrite)"), "{}", refused.stderr);
-    assert_eq!(train(&folder, &["-o", "mine.json", "--overwrite"]).code, Some(0));
+    train(&folder, &["-o", "mine.json", "--overwrite"]).succeeded();
     assert!(folder.read("mine.json") == mine, "the same photographs gave another kernel");
-    assert_eq!(train(&folder, &["-o", "wide.json", "--taps", "7"]).code, Some(0));
+    train(&folder, &["-o", "wide.json", "--taps", "7"]).succeeded();
     let nodes = |name| serde_json::from_slice::<Value>(&folder.read(name)).unwrap()["kernel"].clone();
     let uses_seven = |kernel: &Value| {
         kernel.as_array().unwrap().iter().any(|node| (&node[0], &node[4]) != (&0.into(), &0.into()))
@@ -176,7 +174,7 @@ fn a_trained_kernel_tells_where_it_comes_from_and_is_the_same_every_time() {
 #[test]
 fn a_trained_kernel_corrects_frames_alike_in_the_model_and_on_a_board() {
     let folder = folder_of_pictures();
-    assert_eq!(train(&folder, &["-o", "mine.json"]).code, Some(0));
+    train(&folder, &["-o", "mine.json"]).succeeded();
     let corrected = |kernel: &str, output: &str, how: &[&str]| {
         let call = ["correct", "builtin:street", "--width", "128", "--height", "72", "--radius", "73.78"];
         let ended =
@@ -212,10 +210,9 @@ fn a_photograph_whose_others_determine_no_kernel_costs_no_kernel() {
     let said = train(&folder, &["-o", "three.json"]).stdout;
     assert!(said.contains(", of 2 of them); noise gain"), "{said}");
     std::fs::remove_file(folder.path().join("photos/a.png")).unwrap();
-    let ended = train(&folder, &["-o", "mine.json"]);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let ended = train(&folder, &["-o", "mine.json"]).succeeded();
     assert!(ended.stdout.contains("by the kernel of the others not measured"), "{}", ended.stdout);
-    let file: Value = serde_json::from_slice(&folder.read("mine.json")).unwrap();
+    let file = folder.json("mine.json");
     assert_eq!(file["about"]["figures"]["held_out_gains_db"], serde_json::json!([null, null]));
 }
 

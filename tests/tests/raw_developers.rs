@@ -33,8 +33,7 @@ fn corrected(phase: Phase, depth: BitDepth) -> (Folder, Frame) {
     for output in ["frame.dng", "frame.pgm"] {
         let frame = ["builtin:noise", "--model", "--phase", phase.name(), "--bits", &bits, "-o", output];
         let size = ["correct", "--width", "96", "--height", "54", "--radius", "55"];
-        let ended = folder.halfrow(size.into_iter().chain(frame));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(size.into_iter().chain(frame)).succeeded();
     }
     let frame =
         decode(&folder.read("frame.pgm"), &ReadOptions { depth, phase, ..ReadOptions::default() }).unwrap();
@@ -106,8 +105,7 @@ fn dcraw_develops_the_picture_that_the_preview_shows() {
         let size = ["correct", "--width", "320", "--height", "180", "--radius", "184"];
         let frame = ["builtin:street", "--model", "--phase", phase.name(), "-o", "street.dng"];
         let call = size.into_iter().chain(frame).chain(["--preview", "street.png"]);
-        let ended = folder.halfrow(call);
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(call).succeeded();
         let ours = halfrow::frames::read_rgb(&folder.path().join("street.png")).unwrap();
         let how = ["-w", "-W", "-o", "1", "-g", "2.4", "12.92", "-q", "0", "-c", "street.dng"];
         let ppm = printed(&folder, "dcraw", "dcraw", &how);
@@ -143,8 +141,8 @@ fn it_can_be_corrected_again() {
         let call = [&input, "-o", &output, "--phase", phase, "--bits", bits];
         halfrow(size.into_iter().chain(call))
     };
-    assert_eq!(again("frame.dng", "twice.pgm", "gbrg", "10").code, Some(0));
-    assert_eq!(again("frame.pgm", "expected.pgm", "gbrg", "10").code, Some(0));
+    again("frame.dng", "twice.pgm", "gbrg", "10").succeeded();
+    again("frame.pgm", "expected.pgm", "gbrg", "10").succeeded();
     assert!(folder.read("twice.pgm") == folder.read("expected.pgm"));
     for (phase, bits, remedy) in [
         ("grbg", "10", "its colours lie as gbrg, not as grbg; name the phase (--phase) gbrg"),

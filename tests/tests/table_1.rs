@@ -26,7 +26,7 @@ fn table_1(code: i32, arguments: &[&str]) -> Option<(Folder, Ended)> {
 fn claims(code: i32, arguments: &[&str]) -> Option<Vec<Value>> {
     let (folder, ended) = table_1(code, arguments)?;
     println!("{}", ended.stdout);
-    let report: Value = serde_json::from_slice(&folder.read("out/paper.json")).unwrap();
+    let report = folder.json("out/paper.json");
     Some(report["items"][0]["claims"].as_array().unwrap().clone())
 }
 

@@ -29,6 +29,16 @@ pub struct Ended {
 }
 
 impl Ended {
+    /// Itself: the program must have done what it was called for.
+    ///
+    /// # Panics
+    /// If its exit code is not 0, with all that it printed.
+    #[track_caller]
+    pub fn succeeded(self) -> Self {
+        assert_eq!(self.code, Some(0), "{}{}", self.stdout, self.stderr);
+        self
+    }
+
     /// The JSON document on stdout; null if there is none.
     ///
     /// # Panics
@@ -193,6 +203,15 @@ impl Folder {
     #[must_use]
     pub fn text(&self, name: &str) -> String {
         String::from_utf8(self.read(name)).unwrap()
+    }
+
+    /// The content of a JSON file.
+    ///
+    /// # Panics
+    /// If it cannot be read or is not JSON.
+    #[must_use]
+    pub fn json(&self, name: &str) -> Value {
+        serde_json::from_slice(&self.read(name)).unwrap()
     }
 
     /// The names of everything in a folder inside this one, or in this one for `.`, sorted.

@@ -39,8 +39,7 @@ fn a_recording_whose_times_go_back_is_judged_or_refused() {
     let folder = Folder::new();
     let small = ["--width", "64", "--height", "8", "--frame", "builtin:noise", "--record", "sound.rec"];
     let call = ["verify", "--json", "--board", "mock,speed=100000,delay=0.01"];
-    let recorded = folder.halfrow(call.into_iter().chain(small));
-    assert_eq!(recorded.code, Some(0), "{}{}", recorded.stdout, recorded.stderr);
+    folder.halfrow(call.into_iter().chain(small)).succeeded();
     let sound = folder.read("sound.rec");
     let mut dice = Dice::new(11);
     let last = 1_000_000_000_000;
@@ -151,8 +150,7 @@ fn last_frame_committed() -> Vec<u8> {
 fn a_recording_of_numbers_that_no_run_has_is_no_recording_of_this_run() {
     let folder = Folder::new();
     let call = ["verify", "--json", "--width", "64", "--height", "8", "--frame", "builtin:noise"];
-    let recorded = folder.halfrow(call.into_iter().chain(["--record", "sound.rec"]));
-    assert_eq!(recorded.code, Some(0), "{}{}", recorded.stdout, recorded.stderr);
+    folder.halfrow(call.into_iter().chain(["--record", "sound.rec"])).succeeded();
     let sound = folder.read("sound.rec");
     let (head, exchanges) = sound.split_at(first_exchange(&sound));
     let head = std::str::from_utf8(head).unwrap();

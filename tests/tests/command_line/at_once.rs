@@ -19,7 +19,7 @@ fn run(folder: &Folder, seed: usize, more: &[&str]) -> Ended {
 
 /// The seed that the report names, in both views that name it.
 fn reported_seed(folder: &Folder) -> u64 {
-    let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+    let report = folder.json("out/report.json");
     let seed = report["run"]["seed"].as_u64().unwrap();
     assert!(folder.text("out/report.html").contains(&format!("--seed {seed}")));
     seed
@@ -48,7 +48,7 @@ fn of_runs_with_one_name_one_wins_and_the_others_say_so() {
         }
         assert_eq!(reported_seed(&folder), winner as u64 + 1, "round {round}");
         assert_eq!(folder.names("."), ["out", "run.rec"], "round {round}");
-        assert_eq!(folder.halfrow(["verify", "--board", "replay:run.rec"]).code, Some(0));
+        folder.halfrow(["verify", "--board", "replay:run.rec"]).succeeded();
     }
 }
 
@@ -61,7 +61,7 @@ fn of_runs_that_replace_one_another_the_last_is_whole() {
         assert!((1..=6).contains(&reported_seed(&folder)));
         assert_eq!(folder.names("."), ["out", "run.rec"], "round {round}");
         assert_eq!(folder.names("out"), ["report.html", "report.json", "report.xml"]);
-        assert_eq!(folder.halfrow(["verify", "--board", "replay:run.rec"]).code, Some(0));
+        folder.halfrow(["verify", "--board", "replay:run.rec"]).succeeded();
     }
 }
 
@@ -71,7 +71,7 @@ fn memory_images_that_replace_one_another_are_of_one_run() {
     let sets = [("nearest", "76"), ("linear", "85"), ("keys", "94"), ("hermite", "103")];
     let made = |(kernel, radius), name| {
         let call = ["--kernel", kernel, "--radius", radius, "-o", name, "--overwrite"];
-        assert_eq!(folder.halfrow(small("tables", &call)).code, Some(0));
+        folder.halfrow(small("tables", &call)).succeeded();
     };
     let both = |name: &str| ["steps", "kernel"].map(|kind| folder.text(&format!("{name}.{kind}.mem")));
     let alone = sets.map(|set| {
@@ -145,12 +145,12 @@ fn what_killed_runs_left_is_cleared_and_what_running_ones_write_is_not() {
     folder.write(".halfrow-notes", "somebody's own");
     // A running call clears what dead ones left, and nobody clears what it has.
     let alive = streaming(&folder, ["--report", "alive", "--record", "alive.rec"]);
-    assert_eq!(folder.halfrow(small("tables", &["-o", "t.json"])).code, Some(0));
+    folder.halfrow(small("tables", &["-o", "t.json"])).succeeded();
     let left = under_way(&folder);
     assert!(dead.iter().all(|name| !left.contains(name)), "{left:?}");
     assert_eq!(left.len(), 5, "{left:?}");
     assert!(folder.read("run.rec.partial").starts_with(b"halfrow recording 1\n"));
-    assert_eq!(run(&folder, 1, &[]).code, Some(0));
+    run(&folder, 1, &[]).succeeded();
     alive.send("INT");
     assert_eq!(alive.end().code, Some(130));
     let names = [".halfrow-notes", "alive", "alive.rec", "out", "run.rec", "run.rec.partial", "t.json"];
@@ -166,7 +166,7 @@ fn a_frame_that_a_killed_program_left_is_cleared() {
     let half = |name: &&String| name.starts_with('.');
     assert!(folder.names("out").iter().any(|name| half(&name)));
     let call = small("correct", &["builtin:black", "--model", "-o", "out"]);
-    assert_eq!(folder.halfrow(call).code, Some(0));
+    folder.halfrow(call).succeeded();
     assert_eq!(folder.names("out").iter().filter(half).count(), 0);
 }
 

@@ -8,8 +8,7 @@ use crate::{refused, small};
 fn frames() -> Folder {
     let folder = Folder::new();
     for name in ["frame.pgm", "frame.png", "frame.tif", "frame.raw"] {
-        let made = folder.halfrow(small("correct", &["builtin:noise", "--model", "-o", name]));
-        assert_eq!(made.code, Some(0), "{}", made.stderr);
+        folder.halfrow(small("correct", &["builtin:noise", "--model", "-o", name])).succeeded();
     }
     folder
 }
@@ -64,7 +63,7 @@ fn a_file_that_goes_on_is_refused() {
 fn a_frame_of_another_size_is_refused_with_the_size_that_would_do() {
     let folder = frames();
     let other = ["--width", "128", "--height", "18", "--only", "black", "-o", "other"];
-    assert_eq!(folder.halfrow(["frames"].into_iter().chain(other)).code, Some(0));
+    folder.halfrow(["frames"].into_iter().chain(other)).succeeded();
     bad_frame(&folder, "other/black.pgm", &[], "is 128 x 18, and the tables are for 128 x 16");
     bad_frame(&folder, "frame.raw", &["--raw", "u8"], "it has 2048 more bytes");
 }
@@ -178,8 +177,7 @@ fn samples_of_few_bits_in_deep_frames_are_told_once() {
     folder.write("b.pgm", &flat);
     folder.write("c.raw", vec![200; 128 * 16]);
     let said = |more: &[&str]| {
-        let ended = folder.halfrow(small("correct", more));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended = folder.halfrow(small("correct", more)).succeeded();
         ended.stderr
     };
     let note = "samples of 0 to 255 are taken as they are, of 0 to 4095, and so are dark; name the bits";
@@ -211,8 +209,7 @@ fn files_whose_names_are_no_text_are_read() {
     use std::os::unix::ffi::OsStrExt as _;
     let folder = Folder::new();
     let name = OsStr::from_bytes(b"caf\xe9.pgm");
-    let made = folder.halfrow(small("correct", &["builtin:bars", "--model", "-o", "bars.pgm"]));
-    assert_eq!(made.code, Some(0));
+    folder.halfrow(small("correct", &["builtin:bars", "--model", "-o", "bars.pgm"])).succeeded();
     std::fs::rename(folder.path().join("bars.pgm"), folder.path().join(name)).unwrap();
     let verify = folder.command(small("verify", &["-q", "--json", "--frame"])).arg(name).output().unwrap();
     assert_eq!(verify.status.code(), Some(0), "{}", String::from_utf8_lossy(&verify.stderr));
@@ -248,8 +245,7 @@ fn a_file_s_name_does_nothing_to_a_terminal() {
     let folder = Folder::new();
     let name = "esc\u{1b}[31m.pgm";
     folder.write(name, [&b"P5\n128 16\n255\n"[..], &[0; 128 * 16]].concat());
-    let ended = folder.halfrow(small("correct", &[name, "--model", "-o", "out.pgm"]));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = folder.halfrow(small("correct", &[name, "--model", "-o", "out.pgm"])).succeeded();
     assert!(ended.stderr.contains("path=esc\\u{1b}[31m.pgm"), "{:?}", ended.stderr);
     assert!(!ended.stderr.contains('\u{1b}'), "{:?}", ended.stderr);
 }
@@ -278,6 +274,6 @@ fn a_tiff_without_all_of_its_samples_is_told_once() {
     bytes.extend([0; 4]);
     folder.write("whole.tif", [&bytes[..], &[0; 4096]].concat());
     folder.write("short.tif", [&bytes[..], &[0; 100]].concat());
-    assert_eq!(folder.halfrow(small("verify", &["-q", "--frame", "whole.tif"])).code, Some(0));
+    folder.halfrow(small("verify", &["-q", "--frame", "whole.tif"])).succeeded();
     bad_frame(&folder, "short.tif", &[], "the TIFF is damaged: it breaks off; copy or export it again\n");
 }

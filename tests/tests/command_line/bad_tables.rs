@@ -8,9 +8,8 @@ use crate::{refused, refused_with};
 /// A folder with a legal table file of 64 x 4.
 fn legal() -> (Folder, Value) {
     let folder = Folder::new();
-    let made = folder.halfrow(["tables", "--width", "64", "--height", "4", "-o", "legal.json"]);
-    assert_eq!(made.code, Some(0), "{}", made.stderr);
-    let file = serde_json::from_slice(&folder.read("legal.json")).unwrap();
+    folder.halfrow(["tables", "--width", "64", "--height", "4", "-o", "legal.json"]).succeeded();
+    let file = folder.json("legal.json");
     (folder, file)
 }
 
@@ -34,15 +33,14 @@ fn changed(code: i32, change: impl FnOnce(&mut Value), sentence: &str) {
 fn the_legal_file_itself_is_taken() {
     let (folder, file) = legal();
     folder.write("again.json", file.to_string());
-    assert_eq!(folder.halfrow(["verify", "--tables", "again.json"]).code, Some(0));
+    folder.halfrow(["verify", "--tables", "again.json"]).succeeded();
 }
 
 /// The two names that `tables` takes and prints when it writes images.
 #[test]
 fn memory_images_are_told_to_be_for_verilog() {
     let folder = Folder::new();
-    let made = folder.halfrow(["tables", "--width", "64", "--height", "4", "-o", "line.mem"]);
-    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    folder.halfrow(["tables", "--width", "64", "--height", "4", "-o", "line.mem"]).succeeded();
     for name in ["line.mem", "line.steps.mem"] {
         let sentence = format!(
             "{name} is a name of memory images, which are for Verilog; for tables give the table file (.json)"
@@ -112,9 +110,8 @@ fn nothing_is_corrected_by_tables_that_no_board_takes() {
     let model = ["correct", "builtin:street", "--model", "-o", "out.pgm"];
     refused(&folder, &[&model[..], &aside].concat(), "row 0 needs samples 14 columns later");
     let size = ["--width", "64", "--height", "4", "--radius", "60", "--projection", "exact"];
-    let made = folder.halfrow([&["tables", "-o", "grid.json"], &size[..]].concat());
-    assert_eq!(made.code, Some(0), "{}", made.stderr);
-    let mut file: Value = serde_json::from_slice(&folder.read("grid.json")).unwrap();
+    folder.halfrow([&["tables", "-o", "grid.json"], &size[..]].concat()).succeeded();
+    let mut file = folder.json("grid.json");
     file["grid"][0] = (file["grid"][0].as_u64().unwrap() - 7_000_000).into();
     folder.write("grid.json", file.to_string());
     refused(
@@ -129,14 +126,13 @@ fn nothing_is_corrected_by_tables_that_no_board_takes() {
 fn a_byte_order_mark_changes_nothing() {
     let (folder, _) = legal();
     folder.write("marked.json", format!("\u{feff}{}", folder.text("legal.json")));
-    let kernel: Value = serde_json::from_slice(&folder.read("legal.json")).unwrap();
+    let kernel = folder.json("legal.json");
     let kernel = json!({ "datapath": 1, "kernel": kernel["kernel"] });
     folder.write("kernel.json", format!("\u{feff}{kernel}"));
     let correct = |tables: &str, kernel: &[&str]| {
         let call =
             ["correct", "builtin:noise", "--model", "--tables", tables, "-o", "out.pgm", "--overwrite"];
-        let ended = folder.halfrow([&call[..], kernel].concat());
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow([&call[..], kernel].concat()).succeeded();
         folder.read("out.pgm")
     };
     let plain = correct("legal.json", &[]);
@@ -177,7 +173,7 @@ fn a_file_longer_than_any_tables_is_refused_before_it_is_parsed() {
         "notes.json",
         folder.text("legal.json").replacen('{', &format!("{{{}", " ".repeat(500_000)), 1),
     );
-    assert_eq!(folder.halfrow(["verify", "--tables", "notes.json"]).code, Some(0));
+    folder.halfrow(["verify", "--tables", "notes.json"]).succeeded();
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::{refused, small};
 fn recorded() -> Folder {
     let folder = Folder::new();
     let frames = ["--frame", "builtin:bars", "--frame", "builtin:grey", "--record", "run.rec"];
-    assert_eq!(folder.halfrow(small("verify", &frames)).code, Some(0));
+    folder.halfrow(small("verify", &frames)).succeeded();
     folder
 }
 
@@ -52,7 +52,7 @@ fn a_recording_takes_no_option_that_it_decides_itself() {
     let call: Vec<_> = REPLAY.into_iter().chain(["--lens", "x.yml", "--lens-pitch", "3"]).collect();
     refused(&folder, &call, "does nothing beside a recording");
     let stands = ["--report", "out", "--record", "again.rec", "--overwrite", "--timeout", "600"];
-    assert_eq!(folder.halfrow(REPLAY.into_iter().chain(stands)).code, Some(0));
+    folder.halfrow(REPLAY.into_iter().chain(stands)).succeeded();
 }
 
 #[test]
@@ -88,16 +88,14 @@ fn a_recording_that_is_made_waits_for_no_board() {
         "--reconnect does nothing beside a recording to make (--record)",
     );
     folder.write("settings.toml", "reconnect = 5\n");
-    assert_eq!(folder.halfrow(call(&["--settings", "settings.toml"])).code, Some(0));
-    let ended = finish(folder.command(call(&["--overwrite"])).env("HALFROW_RECONNECT", "5"));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    folder.halfrow(call(&["--settings", "settings.toml"])).succeeded();
+    finish(folder.command(call(&["--overwrite"])).env("HALFROW_RECONNECT", "5")).succeeded();
 }
 
 #[test]
 fn the_list_of_a_recording_is_what_it_holds() {
     let folder = recorded();
-    let listed = folder.halfrow(REPLAY.into_iter().chain(["--list"]));
-    assert_eq!(listed.code, Some(0), "{}", listed.stderr);
+    let listed = folder.halfrow(REPLAY.into_iter().chain(["--list"])).succeeded();
     let named: Vec<_> = listed.stdout.lines().filter_map(|line| line.split_whitespace().nth(1)).collect();
     let noise = "builtin:noise";
     assert_eq!(named, [noise, noise, "builtin:bars", "builtin:grey", noise, noise]);
@@ -112,7 +110,7 @@ fn a_list_takes_no_option_of_a_run() {
         let call: Vec<_> = list.iter().chain(option).copied().collect();
         refused(&folder, &call, &format!("{} does nothing beside --list", option[0]));
     }
-    assert_eq!(finish(folder.command(list).env("HALFROW_REPORT", "out")).code, Some(0));
+    finish(folder.command(list).env("HALFROW_REPORT", "out")).succeeded();
     assert!(!folder.path().join("out").exists());
 }
 
@@ -124,7 +122,7 @@ fn beside_tables<'a>(option: &[&'a str]) -> [Vec<&'a str>; 2] {
 
 fn with_tables() -> Folder {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("tables", &["-o", "made.json"])).code, Some(0));
+    folder.halfrow(small("tables", &["-o", "made.json"])).succeeded();
     folder
 }
 
@@ -159,8 +157,7 @@ fn what_a_table_file_says_itself_may_be_said() {
     let folder = with_tables();
     let same = ["--width", "128", "--height", "16", "--bits", "12", "--centre-x", "63.5", "--phase", "rggb"];
     for call in beside_tables(&same) {
-        let ended = folder.halfrow(call);
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(call).succeeded();
     }
 }
 
@@ -170,8 +167,7 @@ fn options_that_make_tables_beat_a_file_from_elsewhere() {
     let folder = with_tables();
     let tables = |more: &[&str]| {
         let call = ["verify", "--json"].into_iter().chain(more.iter().copied());
-        let ended = finish(folder.command(call).env("HALFROW_TABLES", "made.json"));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended = finish(folder.command(call).env("HALFROW_TABLES", "made.json")).succeeded();
         let said = ended.json()["tables"].clone();
         (said["source"].as_str().unwrap().to_owned(), said["width"].clone(), ended.stderr)
     };
@@ -194,7 +190,7 @@ fn the_model_takes_no_board() {
         let call: Vec<_> = correct.iter().copied().chain(option.iter().copied()).collect();
         refused(&folder, &call, &format!("{} does nothing beside --model", option[0]));
     }
-    assert_eq!(finish(folder.command(correct).env("HALFROW_BOARD", "mock")).code, Some(0));
+    finish(folder.command(correct).env("HALFROW_BOARD", "mock")).succeeded();
 }
 
 #[test]

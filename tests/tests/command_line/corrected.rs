@@ -38,8 +38,7 @@ fn both_model_and_mock_give_the_golden_row() {
     folder.write("tables.json", folder.text("made.json").replace("16777216", "14648488"));
     for how in ways {
         let call = ["correct", "in.pgm", "--tables", "tables.json", "-o", "out.pgm", "--overwrite"];
-        let ended = folder.halfrow(call.into_iter().chain(how));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(call.into_iter().chain(how)).succeeded();
         assert_eq!(folder.read("out.pgm"), pgm(&GOLDEN), "{how:?}");
     }
 }
@@ -59,11 +58,8 @@ fn the_model_gives_what_the_mock_gives_byte_for_byte() {
         let call = |how: &[&'static str]| {
             frames.into_iter().chain(size).chain(kind).chain(how.to_vec()).collect::<Vec<_>>()
         };
-        assert_eq!(folder.halfrow(call(&["--model", "-o", "model"])).code, Some(0));
-        assert_eq!(
-            folder.halfrow(call(&["--board", "mock,latency=20,speed=1000000", "-o", "mock"])).code,
-            Some(0)
-        );
+        folder.halfrow(call(&["--model", "-o", "model"])).succeeded();
+        folder.halfrow(call(&["--board", "mock,latency=20,speed=1000000", "-o", "mock"])).succeeded();
         assert_eq!(folder.names("model"), ["extremes.pgm", "noise.pgm", "street.pgm"]);
         assert_eq!(folder.names("mock"), folder.names("model"));
         for name in folder.names("model") {
@@ -77,14 +73,13 @@ fn the_model_gives_what_the_mock_gives_byte_for_byte() {
 fn a_frame_may_come_through_a_pipe() {
     let folder = Folder::new();
     let frames = ["--only", "noise", "-o", "in", "--width", "128", "--height", "72"];
-    assert_eq!(folder.halfrow(["frames"].into_iter().chain(frames)).code, Some(0));
+    folder.halfrow(["frames"].into_iter().chain(frames)).succeeded();
     let size = ["--width", "128", "--height", "72", "--radius", "73.78", "--model"];
     for (input, output) in [("in/noise.pgm", "file.pgm"), ("/dev/stdin", "pipe.pgm")] {
         let call = ["correct", input, "-o", output].into_iter().chain(size);
         let mut cat = Command::new("cat");
         let mut cat = cat.arg(folder.path().join("in/noise.pgm")).stdout(Stdio::piped()).spawn().unwrap();
-        let ended = finish(folder.command(call).stdin(cat.stdout.take().unwrap()));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        finish(folder.command(call).stdin(cat.stdout.take().unwrap())).succeeded();
         cat.wait().unwrap();
     }
     assert!(folder.read("pipe.pgm") == folder.read("file.pgm"));
@@ -94,9 +89,9 @@ fn a_frame_may_come_through_a_pipe() {
 fn a_broken_board_gives_another_frame_than_the_model() {
     let folder = Folder::new();
     let call = small("correct", &["builtin:noise", "--model", "-o", "model.pgm"]);
-    assert_eq!(folder.halfrow(call).code, Some(0));
+    folder.halfrow(call).succeeded();
     let call = small("correct", &["builtin:noise", "--board", "mock,fault=no-rounding", "-o", "board.pgm"]);
-    assert_eq!(folder.halfrow(call).code, Some(0));
+    folder.halfrow(call).succeeded();
     assert!(folder.read("model.pgm") != folder.read("board.pgm"));
 }
 
@@ -114,7 +109,7 @@ fn a_board_of_another_datapath_corrects_nothing() {
 fn every_format_can_be_written_and_read_again() {
     let folder = Folder::new();
     let call = small("correct", &["builtin:street", "--model", "-o", "once.pgm"]);
-    assert_eq!(folder.halfrow(call).code, Some(0));
+    folder.halfrow(call).succeeded();
     for file in ["once.png", "once.tif", "once.dng", "once.raw"] {
         let call = small("correct", &["builtin:street", "--model", "-o", file]);
         assert_eq!(folder.halfrow(call).code, Some(0), "{file}");
@@ -183,7 +178,7 @@ fn a_file_that_is_there_is_replaced_only_when_that_is_allowed() {
     );
     assert_eq!(folder.text("out.pgm"), "precious");
     let call = small("correct", &["builtin:black", "--model", "-o", "out.pgm", "--overwrite"]);
-    assert_eq!(folder.halfrow(call).code, Some(0));
+    folder.halfrow(call).succeeded();
     assert!(folder.read("out.pgm").starts_with(b"P5"));
 }
 
@@ -228,8 +223,7 @@ fn what_a_camera_that_hangs_upside_down_has_seen_is_shown_upright() {
     folder.write("in.pgm", b"P5\n128 16\n255\n".iter().copied().chain(light).collect::<Vec<u8>>());
     let correct = |input: &str, more: &[&str]| {
         let call = [&[input, "--bits", "8"], more, &["--preview", "look.png", "--overwrite"]].concat();
-        let ended = folder.halfrow(small("correct", &call));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(small("correct", &call)).succeeded();
     };
     let top = || halfrow::frames::read_rgb(&folder.path().join("look.png")).unwrap().data[0];
     for name in ["frame.dng", "frame.tif"] {
@@ -247,15 +241,13 @@ fn what_a_camera_that_hangs_upside_down_has_seen_is_shown_upright() {
 #[test]
 fn the_orientation_of_a_dng_is_kept() {
     let folder = Folder::new();
-    let made = folder.halfrow(small("correct", &["builtin:noise", "--model", "-o", "in.dng"]));
-    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    folder.halfrow(small("correct", &["builtin:noise", "--model", "-o", "in.dng"])).succeeded();
     let upright = folder.read("in.dng");
     folder.write("upright.dng", &upright);
     folder.write("hanging.dng", turned(upright, 3));
     for (name, how) in [("model", ["--model", "--quiet"]), ("board", ["--board", "mock"])] {
         let call = [&["upright.dng", "hanging.dng", "-o", name, "--format", "dng"][..], &how].concat();
-        let ended = folder.halfrow(small("correct", &call));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(small("correct", &call)).succeeded();
         let [hanging, upright] =
             ["hanging", "upright"].map(|frame| folder.read(&format!("{name}/{frame}.dng")));
         assert_eq!((orientation(&hanging), orientation(&upright)), (3, 1), "{name}");

@@ -141,8 +141,7 @@ fn a_failure_names_its_suspect_by_a_code_for_designer_and_technician() {
 
 #[test]
 fn the_schema_that_is_printed_is_the_one_in_the_repository() {
-    let printed = halfrow(["schema"]);
-    assert_eq!(printed.code, Some(0));
+    let printed = halfrow(["schema"]).succeeded();
     assert_printed_by("halfrow schema", &printed.stdout, "host/schema/halfrow-1.json", SCHEMA);
     let of_one: Value = serde_json::from_str(&halfrow(["schema", "info"]).stdout).unwrap();
     let of_one = jsonschema::validator_for(&of_one).unwrap();
@@ -177,8 +176,7 @@ fn a_page_that_is_not_what_its_command_prints_is_told_by_its_first_other_line() 
 #[test]
 fn the_pages_of_codes_and_commands_are_those_in_the_repository_and_no_code_stands_twice() {
     for (command, page) in [("codes", "docs/CODES.md"), ("commands", "docs/COMMANDS.md")] {
-        let printed = halfrow([command]);
-        assert_eq!(printed.code, Some(0));
+        let printed = halfrow([command]).succeeded();
         assert_printed_by(&format!("halfrow {command}"), &printed.stdout, page, &repository(page));
     }
     let codes = halfrow(["codes", "--json"]).json();

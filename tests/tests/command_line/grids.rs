@@ -91,10 +91,9 @@ fn a_board_is_soaked_behind_a_grid() {
 fn a_grid_is_a_file_of_its_own_kind() {
     let folder = Folder::new();
     for file in ["exact.json", "exact.mem"] {
-        let made = folder.halfrow(exact(&["tables", "-o", file]));
-        assert_eq!(made.code, Some(0), "{}", made.stderr);
+        folder.halfrow(exact(&["tables", "-o", file])).succeeded();
     }
-    let json: Value = serde_json::from_slice(&folder.read("exact.json")).unwrap();
+    let json = folder.json("exact.json");
     let [v, k] = ["v", "k"].map(|key| json[key].as_u64().unwrap());
     // DATAPATH.md: (N + 2) columns of floor((H - 1) / 2^v) + 3 grid rows.
     let (segments, rows) = (192_u64.div_ceil(1 << k), (47 >> v) + 3);
@@ -147,8 +146,7 @@ fn boards_and_calls_that_do_not_go_with_a_grid_are_named_with_the_remedy() {
 #[test]
 fn what_each_projection_leaves_is_told() {
     let folder = Folder::new();
-    let told = folder.halfrow(exact(&["lens", "--json", "--map", "error.png"]));
-    assert_eq!(told.code, Some(0), "{}", told.stderr);
+    let told = folder.halfrow(exact(&["lens", "--json", "--map", "error.png"])).succeeded();
     let told = told.json();
     let inner = |by: &str| told["residual_px"]["parts"][by]["inner"]["max"].as_f64().unwrap();
     assert!(
@@ -226,8 +224,7 @@ fn a_lens_that_misses_the_frame_gives_no_grid_either() {
     let high = ["--width", "192", "--height", "48", "--radius", "18"];
     let told = |more: &[&str]| {
         let call = [&["tables", "-o", "t.json", "--overwrite"], &high[..], more].concat();
-        let ended = folder.halfrow(call);
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended = folder.halfrow(call).succeeded();
         ended.stdout
     };
     let rows = told(&[]);
@@ -278,7 +275,7 @@ fn the_nodes_of_a_grid_are_as_far_apart_as_a_board_takes_them() {
         let made =
             folder.halfrow(exact(&["tables", "-o", "x.json", "--overwrite", "--nodes-every", columns]));
         assert_eq!(made.code, Some(0), "{}", made.stderr);
-        let tables: Value = serde_json::from_slice(&folder.read("x.json")).unwrap();
+        let tables = folder.json("x.json");
         assert_eq!(tables["k"], k, "{}", tables["k"]);
     }
 }

@@ -22,8 +22,8 @@ fn opens_once(folder: &Folder, call: &[&str], file: &str) {
 fn what_is_hashed_is_what_was_judged() {
     let folder = Folder::new();
     folder.write("lens.yml", include_bytes!("../../../host/judge/tests/lenses/files/opencv-4.10.yml"));
-    assert_eq!(folder.halfrow(small("tables", &["-o", "t.json"])).code, Some(0));
-    assert_eq!(folder.halfrow(small("frames", &["--only", "noise", "-o", "."])).code, Some(0));
+    folder.halfrow(small("tables", &["-o", "t.json"])).succeeded();
+    folder.halfrow(small("frames", &["--only", "noise", "-o", "."])).succeeded();
     let tables = ["verify", "--json", "--tables", "t.json", "--frame", "noise.pgm", "--at-speed", "0"];
     opens_once(&folder, &tables, "t.json");
     opens_once(&folder, &tables, "noise.pgm");

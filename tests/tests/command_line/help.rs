@@ -37,8 +37,7 @@ fn every_command_is_listed_and_explains_itself() {
     let expected: Vec<_> = COMMANDS.iter().map(|(name, _)| *name).chain(["help"]).collect();
     assert_eq!(listed, expected);
     for (name, beginning) in COMMANDS {
-        let help = halfrow(["help", name]);
-        assert_eq!(help.code, Some(0));
+        let help = halfrow(["help", name]).succeeded();
         assert!(help.stdout.starts_with(beginning), "{name}: {}", help.stdout);
         assert!(help.stdout.contains(&format!("Usage: halfrow {name}")), "{name}: {}", help.stdout);
         assert_eq!(halfrow([name, "--help"]).stdout, help.stdout);
@@ -117,8 +116,7 @@ fn a_call_without_a_command_shows_help_and_is_a_usage_error() {
 #[test]
 fn every_completion_script_knows_every_command() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        let script = halfrow(["completions", shell]);
-        assert_eq!(script.code, Some(0));
+        let script = halfrow(["completions", shell]).succeeded();
         let unknown: Vec<_> = COMMANDS.iter().filter(|(name, _)| !script.stdout.contains(name)).collect();
         assert!(unknown.is_empty(), "{shell}: {unknown:?}");
         assert!(script.stdout.contains("retry-limit"), "{shell}");
@@ -197,7 +195,7 @@ fn bash_reads_its_completion_script() {
 #[test]
 fn there_is_a_manual_page_for_the_program_and_for_every_command() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(["manual", "."]).code, Some(0));
+    folder.halfrow(["manual", "."]).succeeded();
     let mut pages: Vec<_> = COMMANDS.iter().map(|(name, _)| format!("halfrow-{name}.1")).collect();
     pages.extend(["halfrow.1", "halfrow-kernel-measure.1", "halfrow-kernel-train.1"].map(str::to_owned));
     pages.sort();
@@ -212,7 +210,7 @@ fn there_is_a_manual_page_for_the_program_and_for_every_command() {
 #[test]
 fn the_synopsis_of_a_manual_page_names_the_values() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(["manual", "."]).code, Some(0));
+    folder.halfrow(["manual", "."]).succeeded();
     assert!(folder.names(".").contains(&"halfrow-kernel-train.1".to_owned()));
     let page = folder.text("halfrow-verify.1");
     let synopsis = page.split(".SH SYNOPSIS\n").nth(1).unwrap().split("\n.SH").next().unwrap();

@@ -64,21 +64,20 @@ fn a_board_passes_with_the_rows_of_every_lens_file() {
 #[test]
 fn the_table_file_holds_the_fitted_rows_and_the_lens_s_centre() {
     let folder = folder();
-    let made = folder.halfrow(["tables", "--lens", "dsl215.txt", "-o", "dsl215.json"]);
-    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let made = folder.halfrow(["tables", "--lens", "dsl215.txt", "-o", "dsl215.json"]).succeeded();
     assert!(
         made.stdout.contains("OCamCalib lens dsl215.txt, R = 388.558 pixels (fitted rows)"),
         "{}",
         made.stdout
     );
-    let file: Value = serde_json::from_slice(&folder.read("dsl215.json")).unwrap();
+    let file = folder.json("dsl215.json");
     assert_eq!((&file["width"], &file["height"], &file["centre2"]), (&752.into(), &480.into(), &729.into()));
     for (row, factor) in [(0, 13_125_603.7), (150, 16_374_261.0), (479, 12_368_952.0)] {
         assert_near(&file["step"][row], factor, 2.0);
     }
     let call = ["tables", "--lens", "dsl215.txt", "--rows", "equation-9", "-o", "eq9.json"];
-    assert_eq!(folder.halfrow(call).code, Some(0));
-    let file: Value = serde_json::from_slice(&folder.read("eq9.json")).unwrap();
+    folder.halfrow(call).succeeded();
+    let file = folder.json("eq9.json");
     assert_near(&file["step"][0], 13_537_752.0, 1.0);
 }
 
@@ -87,7 +86,7 @@ fn the_paper_s_lens_keeps_eq_9_unless_fitted_rows_are_asked_for() {
     let folder = Folder::new();
     let row_factors = |name: &str, lens: &[&str]| {
         let call = ["tables", "-o", name].into_iter().chain(lens.iter().copied());
-        assert_eq!(folder.halfrow(call).code, Some(0));
+        folder.halfrow(call).succeeded();
         serde_json::from_slice::<Value>(&folder.read(name)).unwrap()["step"].clone()
     };
     let plain = row_factors("plain.json", &["--radius", "1106.697"]);
@@ -163,7 +162,7 @@ fn a_lens_moves_to_another_sensor_by_its_pixel_pitch() {
 #[test]
 fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
     let folder = folder();
-    assert_eq!(folder.halfrow(["tables", "--radius", "1106.697", "-o", "made.json"]).code, Some(0));
+    folder.halfrow(["tables", "--radius", "1106.697", "-o", "made.json"]).succeeded();
     let tables = |more: &[&str], sentence: &str| {
         let call: Vec<_> = ["tables", "-o", "x.json"].into_iter().chain(more.iter().copied()).collect();
         refused(&folder, &call, sentence);
@@ -246,8 +245,7 @@ fn a_calibration_without_a_picture_size_needs_one() {
         refused(&folder, &[call, &lens].concat(), sentence);
     }
     for more in [&["--width", "64", "--height", "17"][..], &["--lens-pitch", "66"]] {
-        let ended = folder.halfrow([&["lens"], &lens[..], more].concat());
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow([&["lens"], &lens[..], more].concat()).succeeded();
     }
     // ROS's drivers write 0 x 0 when they do not know the size.
     calibration(&folder, "40", ",\"width\":0,\"height\":0");
@@ -276,8 +274,7 @@ fn a_lens_that_misses_the_frame_is_refused_or_told() {
     let size = ",\"width\":64,\"height\":17";
     calibration(&folder, "1", size);
     for call in [&["tables", "-o", "made.json"][..], &["lens"], &["verify", "-q"]] {
-        let ended = folder.halfrow([call, &["--lens", "lens.json"]].concat());
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended = folder.halfrow([call, &["--lens", "lens.json"]].concat()).succeeded();
         let said = "14 of 17 rows lie outside the image circle, whose radius is 1.571 pixels around row 8.0";
         assert!(ended.stderr.contains(said), "{}", ended.stderr);
     }
@@ -382,8 +379,7 @@ fn verticals_photographed_by_the_lens_come_out_straighter_with_fitted_rows() {
     let corrected = |rows: &str| {
         let name = format!("{rows}.pgm");
         let call = ["correct", "lines.pgm", "--model", "--lens", "dsl215.txt", "--rows", rows, "-o", &name];
-        let ended = folder.halfrow(call);
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(call).succeeded();
         bend(&folder.read(&name))
     };
     let (fitted, equation_9) = (corrected("fitted"), corrected("equation-9"));

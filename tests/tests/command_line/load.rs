@@ -32,7 +32,7 @@ fn with_loader(script: &str) -> Folder {
     let put = "mkdir bin; printf '#!/bin/sh\\n%s\\n' \"$1\" >bin/openFPGALoader; chmod +x bin/openFPGALoader";
     let mut shell = Command::new("sh");
     shell.current_dir(folder.path()).args(["-ec", put, "sh", script]);
-    assert_eq!(finish(&mut shell).code, Some(0));
+    finish(&mut shell).succeeded();
     folder.write("top.bit", "a bitstream");
     folder
 }
@@ -45,8 +45,7 @@ fn repository() -> PathBuf {
 fn recorded(folder: &Folder, board: &str, build: &str) {
     let mut record = Command::new(repository().join("fpga/boards/record"));
     record.current_dir(folder.path()).args(["top.bit", board, "xc6slx25", "fifo", build, "ISE 14.7"]);
-    let ended = finish(&mut record);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    finish(&mut record).succeeded();
 }
 
 /// `halfrow load` in a folder whose `bin` comes first on the path.
@@ -87,8 +86,8 @@ fn the_loader_is_called_by_its_name_of_the_board_and_the_build_is_compared() {
     let (build, served) = (build_of_the_mock(), Served::on_a_serial_port("mock"));
     let board = &served.target();
     recorded(&folder, "minispartan6plus", &build);
-    let ended = load(&folder, &["top.bit", "--board", board, "--json", "--", "--ftdi-serial", "HR 1"]);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended =
+        load(&folder, &["top.bit", "--board", board, "--json", "--", "--ftdi-serial", "HR 1"]).succeeded();
     assert_eq!(folder.text("called"), "-b\nminispartan6\n--ftdi-serial\nHR 1\ntop.bit\n");
     let said = ended.json();
     assert_eq!(
@@ -130,8 +129,7 @@ fn a_bitstream_without_a_record_is_loaded_with_a_warning_onto_the_board_that_is_
     let folder = with_loader(WORKS);
     refused(&folder, &["top.bit"], 2, "bitstream-board-not-named");
     assert!(!folder.path().join("called").exists());
-    let ended = load(&folder, &["top.bit", "--onto", "ulx3s", "--json"]);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = load(&folder, &["top.bit", "--onto", "ulx3s", "--json"]).succeeded();
     assert!(ended.stderr.contains("warning: there is no top.bit.json beside it"), "{}", ended.stderr);
     let said = ended.json();
     assert_eq!((&said["loaded"]["record"], &said["loaded"]["compared"]), (&Value::Null, &json!(false)));
@@ -187,8 +185,7 @@ fn a_general_board_that_cannot_be_greeted_is_passed_over() {
         [("/dev/null", Some("mock")), ("/dev/null", Some("pool:ulx3s")), ("settings.toml", None)]
     {
         let mut call = command(&folder, &["top.bit", "-v", "--json", "--settings", settings]);
-        let ended = finish(call.envs(variable.map(|board| ("HALFROW_BOARD", board))));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended = finish(call.envs(variable.map(|board| ("HALFROW_BOARD", board)))).succeeded();
         assert!(ended.stderr.contains(" is passed over: "), "{}", ended.stderr);
         assert_eq!(ended.json()["loaded"]["compared"], false);
     }
@@ -257,8 +254,7 @@ fn a_loader_that_hangs_is_killed_at_the_deadline_with_all_that_it_started() {
 fn a_program_that_a_loader_leaves_behind_cannot_talk_for_ever() {
     let folder = with_loader(LEAVES);
     recorded(&folder, "ulx3s", "00000001");
-    let ended = load(&folder, &["top.bit"]);
-    assert_eq!(ended.code, Some(0));
+    load(&folder, &["top.bit"]).succeeded();
 }
 
 /// Whoever starts the program may ignore the signals of child processes.
@@ -270,8 +266,7 @@ fn a_loader_s_end_is_known_where_signals_of_children_are_ignored() {
     let mut deaf = Command::new("env");
     deaf.arg("--ignore-signal=CHLD").arg(wanted.get_program()).args(wanted.get_args());
     deaf.envs(wanted.get_envs().filter_map(|(name, value)| Some((name, value?)))).current_dir(folder.path());
-    let ended = finish(&mut deaf);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    finish(&mut deaf).succeeded();
 }
 
 #[test]
@@ -342,8 +337,7 @@ fn a_bitstream_whose_name_is_no_text_is_loaded() {
     let folder = with_loader(WORKS);
     let name = std::ffi::OsStr::from_bytes(b"caf\xe9.bit");
     fs::rename(folder.path().join("top.bit"), folder.path().join(name)).unwrap();
-    let ended = finish(command(&folder, &["--json", "--onto", "ulx3s"]).arg(name));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = finish(command(&folder, &["--json", "--onto", "ulx3s"]).arg(name)).succeeded();
     assert_eq!(ended.json()["loaded"]["file"], "caf\u{fffd}.bit");
 }
 

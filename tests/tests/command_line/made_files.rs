@@ -11,14 +11,13 @@ const MIDDLE_FACTOR: u32 = 16_777_214;
 #[test]
 fn the_paper_s_table_file_holds_the_golden_factors() {
     let folder = Folder::new();
-    let ended = folder.halfrow(["tables", "--radius", "1106.697", "-o", "lens.json"]);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = folder.halfrow(["tables", "--radius", "1106.697", "-o", "lens.json"]).succeeded();
     assert!(
         ended.stdout.starts_with("wrote lens.json: equidistant lens, R = 1106.697 pixels"),
         "{}",
         ended.stdout
     );
-    let file: serde_json::Value = serde_json::from_slice(&folder.read("lens.json")).unwrap();
+    let file = folder.json("lens.json");
     assert_eq!((&file["step"][0], &file["step"][539]), (&FIRST_FACTOR.into(), &MIDDLE_FACTOR.into()));
     assert_eq!(file["step"].as_array().unwrap().len(), 1080);
     assert_eq!((&file["datapath"], &file["centre2"]), (&1.into(), &1919.into()));
@@ -37,7 +36,7 @@ fn what_is_uploaded_has_the_golden_checksums() {
 #[test]
 fn memory_images_hold_the_same_words() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(["tables", "--radius", "1106.697", "-o", "lens.mem"]).code, Some(0));
+    folder.halfrow(["tables", "--radius", "1106.697", "-o", "lens.mem"]).succeeded();
     assert_eq!(folder.names("."), ["lens.kernel.mem", "lens.steps.mem"]);
     let rows = folder.text("lens.steps.mem");
     let words: Vec<_> = rows.lines().filter(|line| !line.starts_with("//")).collect();
@@ -93,11 +92,8 @@ fn a_memory_image_that_does_not_belong_to_the_other_is_named_where_names_cannot_
 fn a_table_file_and_written_frames_can_be_judged_with() {
     let folder = Folder::new();
     let lens = ["--width", "128", "--height", "72", "--radius", "73.78", "--bits", "10", "--centre-x", "60"];
-    assert_eq!(
-        folder.halfrow(["tables", "--kernel", "keys", "-o", "lens.json"].into_iter().chain(lens)).code,
-        Some(0)
-    );
-    assert_eq!(folder.halfrow(["frames", "-o", "frames"].into_iter().chain(lens)).code, Some(0));
+    folder.halfrow(["tables", "--kernel", "keys", "-o", "lens.json"].into_iter().chain(lens)).succeeded();
+    folder.halfrow(["frames", "-o", "frames"].into_iter().chain(lens)).succeeded();
     assert_eq!(folder.names("frames").len(), 12);
     let frames: Vec<_> = folder.names("frames").iter().map(|name| format!("--frame=frames/{name}")).collect();
     let call =
@@ -113,7 +109,7 @@ fn written_frames_are_what_they_are_called() {
     let folder = Folder::new();
     let only = ["--only", "black", "--only", "white", "--only", "grey"];
     let call = small("frames", &["-o", "."]).into_iter().chain(only);
-    assert_eq!(folder.halfrow(call).code, Some(0));
+    folder.halfrow(call).succeeded();
     assert_eq!(folder.names("."), ["black.pgm", "grey.pgm", "white.pgm"]);
     for (name, sample) in [("black.pgm", 0_u16), ("grey.pgm", 2048), ("white.pgm", 4095)] {
         let samples = sample.to_be_bytes().repeat(128 * 16);
@@ -147,8 +143,7 @@ fn the_street_is_seen_about_the_axis_wherever_that_is() {
         folder.write("low.json", lens(3.5, 16));
         for (rows, more) in [("32", high), ("16", low)] {
             let call = ["frames", "--width", "128", "--only", "street", "--height", rows, "-o", rows];
-            let ended = folder.halfrow(call.iter().chain(more).copied());
-            assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+            folder.halfrow(call.iter().chain(more).copied()).succeeded();
         }
         let (high, low) =
             (samples_from(&folder, "32/street.pgm", 12), samples_from(&folder, "16/street.pgm", 0));
@@ -163,7 +158,7 @@ fn a_seed_gives_the_same_noise_again_and_another_seed_other_noise() {
     let folder = Folder::new();
     for (seed, name) in [("7", "a"), ("7", "b"), ("8", "c")] {
         let call = small("frames", &["--only", "noise", "--seed", seed, "-o", name]);
-        assert_eq!(folder.halfrow(call).code, Some(0));
+        folder.halfrow(call).succeeded();
     }
     let noise = |name| folder.read(&format!("{name}/noise.pgm"));
     assert!(noise("a") == noise("b") && noise("a") != noise("c"));
@@ -185,7 +180,7 @@ fn files_that_are_there_stay_as_they_are() {
     exists(&small("frames", &["--only", "black", "-o", "."]));
     assert_eq!(folder.names("."), ["black.pgm", "lens.json", "lens.kernel.mem"]);
     assert!(folder.names(".").iter().all(|name| folder.text(name) == "precious"));
-    assert_eq!(folder.halfrow(small("tables", &["-o", "lens.json", "--overwrite"])).code, Some(0));
+    folder.halfrow(small("tables", &["-o", "lens.json", "--overwrite"])).succeeded();
     assert!(folder.text("lens.json").starts_with('{'));
 }
 
@@ -195,8 +190,7 @@ fn endings_are_taken_in_any_case() {
     for (name, made) in
         [("LENS.JSON", &["LENS.JSON"][..]), ("Lens.Mem", &["Lens.kernel.mem", "Lens.steps.mem"])]
     {
-        let ended = folder.halfrow(small("tables", &["-o", name]));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(small("tables", &["-o", name])).succeeded();
         assert!(
             made.iter().all(|file| folder.names(".").contains(&(*file).to_owned())),
             "{:?}",
@@ -210,8 +204,7 @@ fn endings_are_taken_in_any_case() {
 fn rows_outside_the_image_circle_are_allowed_and_counted() {
     let folder = Folder::new();
     let size = ["--width", "64", "--height", "100", "--radius", "40"];
-    let ended = folder.halfrow(["tables", "-o", "lens.json"].into_iter().chain(size));
-    assert_eq!(ended.code, Some(0));
+    let ended = folder.halfrow(["tables", "-o", "lens.json"].into_iter().chain(size)).succeeded();
     // |y| is 0.5, 1.5, … 49.5; ten of the 50 rows on either side have |y| of 40.5 or more.
     assert!(ended.stdout.contains("20 rows outside the image circle"), "{}", ended.stdout);
     let said = halfrow(["verify", "--json"].into_iter().chain(size)).json();

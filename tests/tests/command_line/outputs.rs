@@ -164,7 +164,7 @@ fn inputs() -> Folder {
         r#"{"K":[[90,0,64],[0,90,8],[0,0,1]],"D":[0,0,0,0],"image_width":128,"image_height":16}"#,
     );
     folder.write("lens.png", folder.read("lens.json"));
-    let table: serde_json::Value = serde_json::from_slice(&folder.read("t.json")).unwrap();
+    let table = folder.json("t.json");
     folder.write("kernel.json", serde_json::json!({ "kernel": table["kernel"] }).to_string());
     folder.write("kernel.pgm", folder.read("kernel.json"));
     folder.write("t.pgm", folder.read("t.json"));
@@ -274,8 +274,7 @@ fn a_file_that_comes_to_another_group_is_open_to_nobody_more() {
         chown(&file, None, Some(54_321)).unwrap();
         fs::set_permissions(&file, fs::Permissions::from_mode(mode)).unwrap();
         let call = small("tables", &["-o", "theirs/t.json", "--overwrite"]);
-        let ended = finish(&mut folder.as_nobody(&call));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        finish(&mut folder.as_nobody(&call)).succeeded();
         let there = fs::metadata(&file).unwrap();
         assert_eq!((there.mode() & 0o7777, there.uid(), there.gid()), (expected, NOBODY, NOBODY), "{mode:o}");
     }
@@ -286,7 +285,7 @@ fn two_outputs_are_two() {
     let folder = Folder::new();
     let call = |more: &[&'static str]| small("verify", &[&["--board", DEAD, "--overwrite"], more].concat());
     refused(&folder, &call(&["--record", "rr", "--report", "rr"]), "would both be written to rr");
-    assert_eq!(folder.halfrow(small("verify", &["--report", "rep"])).code, Some(0));
+    folder.halfrow(small("verify", &["--report", "rep"])).succeeded();
     refused(&folder, &call(&["--record", "rep/run.rec", "--report", "rep"]), "would both be written to rep");
     refused(&folder, &call(&["--record", "rep/report.xml", "--report", "./rep"]), "would both be written to");
     assert_eq!(folder.names("rep"), ["report.html", "report.json", "report.xml"]);
@@ -295,7 +294,7 @@ fn two_outputs_are_two() {
 #[test]
 fn manual_pages_are_written_into_a_folder_as_other_files_are() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(["manual", "a/man"]).code, Some(0));
+    folder.halfrow(["manual", "a/man"]).succeeded();
     let pages = folder.names("a/man");
     folder.write("a/man/halfrow.1", "precious");
     refused(
@@ -304,7 +303,7 @@ fn manual_pages_are_written_into_a_folder_as_other_files_are() {
         ".1 exists; allow it to be overwritten (--overwrite), or name another folder",
     );
     assert_eq!(folder.text("a/man/halfrow.1"), "precious");
-    assert_eq!(folder.halfrow(["manual", "a/man", "--overwrite"]).code, Some(0));
+    folder.halfrow(["manual", "a/man", "--overwrite"]).succeeded();
     assert!(folder.text("a/man/halfrow.1").contains(".TH halfrow"));
     assert_eq!(folder.names("a/man"), pages);
 }

@@ -53,8 +53,8 @@ fn a_picture_from_a_pipe_is_fitted_and_told_in_a_line() {
     for whom in [&["--model"][..], &["--board", "mock"]] {
         let call = small("correct", &["/dev/stdin", "--fit", "--overwrite", "-o", "out.pgm"]);
         let line = "cat turned6.jpg | \"$@\"";
-        let ended = finish(&mut folder.by_shell(line, call.into_iter().chain(whom.iter().copied())));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended =
+            finish(&mut folder.by_shell(line, call.into_iter().chain(whom.iter().copied()))).succeeded();
         let told = FITTED.replace("turned6.jpg", "/dev/stdin");
         assert!(ended.stderr.contains(&told), "{}", ended.stderr);
     }
@@ -63,13 +63,13 @@ fn a_picture_from_a_pipe_is_fitted_and_told_in_a_line() {
 #[test]
 fn pictures_are_fitted_and_each_is_told_in_a_line() {
     let folder = folder();
-    let ended = folder.halfrow(small("verify", &["--fit", "--frame", "turned6.jpg", "--frame", "flat.bmp"]));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = folder
+        .halfrow(small("verify", &["--fit", "--frame", "turned6.jpg", "--frame", "flat.bmp"]))
+        .succeeded();
     assert_eq!(ended.stderr.matches("fitted ").count(), 1, "{}", ended.stderr);
     assert!(ended.stderr.contains(FITTED), "{}", ended.stderr);
     let several = ["turned6.jpg", "lossless.webp", "small.png", "flat.bmp", "--model", "-o", "out", "--fit"];
-    let ended = folder.halfrow(small("correct", &several));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = folder.halfrow(small("correct", &several)).succeeded();
     assert_eq!(ended.stderr.lines().count(), 3, "{}", ended.stderr);
     assert_eq!(folder.names("out"), ["flat.pgm", "lossless.pgm", "small.pgm", "turned6.pgm"]);
     let quiet = folder.halfrow(small("correct", &["-q", "turned6.jpg", "--model", "-o", "q.pgm", "--fit"]));
@@ -113,8 +113,7 @@ fn raw_samples_are_never_fitted() {
     refused(&folder, &small("verify", &["--fit", "--frame", "raw.pgm"]), "raw samples are never scaled");
     let headerless = ["--fit", "--raw", "u16le", "--frame", "raw.bin"];
     refused(&folder, &small("verify", &headerless), "--fit does nothing beside --raw");
-    let set = finish(folder.command(small("verify", &headerless[1..])).env("HALFROW_FIT", "1"));
-    assert_eq!(set.code, Some(0), "{}", set.stderr);
+    finish(folder.command(small("verify", &headerless[1..])).env("HALFROW_FIT", "1")).succeeded();
     refused(&folder, &small("verify", &["--fit"]), "--fit is for frames that are files");
 }
 
@@ -123,8 +122,7 @@ fn raw_samples_are_never_fitted() {
 fn a_photograph_is_previewed_as_it_is_coded() {
     let folder = folder();
     let call = ["flat.bmp", "--model", "-o", "out.png", "--preview", "look.png"];
-    let ended = folder.halfrow(small("correct", &call));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    folder.halfrow(small("correct", &call)).succeeded();
     let image = read_rgb(&folder.path().join("look.png")).unwrap();
     assert!(image.data.chunks_exact(3).all(|pixel| pixel == [200, 100, 40]), "{:?}", &image.data[..6]);
 }

@@ -12,7 +12,7 @@ fn leased_by(script: &str) -> Folder {
     let text = "cp \"$1\" halfrow; cp lease halfrow-station; chmod +x halfrow-station";
     let mut shell = Command::new("sh");
     shell.current_dir(folder.path()).args(["-ec", text, "sh"]).arg(command([]).get_program());
-    assert_eq!(finish(&mut shell).code, Some(0));
+    finish(&mut shell).succeeded();
     folder
 }
 
@@ -40,8 +40,7 @@ echo back > back
 #[test]
 fn a_board_of_a_kind_is_waited_for_and_given_back() {
     let folder = leased_by(&LEASES.replace("BOARD", "mock"));
-    let ended = finish(&mut verify(&folder, "pool:ulx3s"));
-    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let ended = finish(&mut verify(&folder, "pool:ulx3s")).succeeded();
     assert_eq!(folder.text("called"), "board hold -- ulx3s\n");
     let said: Vec<_> = ended.stderr.lines().collect();
     let expected = [
@@ -120,11 +119,11 @@ fn without_a_board_nothing_is_judged_and_it_is_said_why() {
         assert!(ended.code == Some(code) && ended.stderr.contains(said), "{board}: {ended:?}");
     }
     let folder = leased_by(nothing);
-    assert_eq!(finish(verify(&folder, "mock").args(INTO)).code, Some(0));
+    finish(verify(&folder, "mock").args(INTO)).succeeded();
     for extra in [&[][..], &["--within", "1"]] {
         let ended = finish(verify(&folder, "pool:ulx3s").args(INTO).args(extra));
         assert_eq!(ended.code, Some(3), "{ended:?}");
-        let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+        let report = folder.json("out/report.json");
         assert_eq!(
             (&report["verdict"], &report["error"]["code"]),
             (&"ERROR".into(), &"pool-without-board".into())

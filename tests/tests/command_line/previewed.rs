@@ -23,8 +23,7 @@ fn preview(more: &[&str]) -> RgbImage {
     let folder = Folder::new();
     folder.write("edge.pgm", edge());
     let call = ["edge.pgm", "--bits", "8", "--model", "-o", "out.pgm", "--preview", "look.png"];
-    let ended = folder.halfrow(small("correct", &call).into_iter().chain(more.iter().copied()));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = folder.halfrow(small("correct", &call).into_iter().chain(more.iter().copied())).succeeded();
     assert_eq!(
         ended.stdout,
         "wrote out.pgm, corrected by the model, not judged\nwrote look.png, a preview\n\
@@ -74,8 +73,7 @@ fn headerless_samples_are_no_photograph_however_they_begin() {
     folder.write("dark.raw", [66, 77].repeat(64 * 16));
     let call =
         ["dark.raw", "--raw", "u8", "--bits", "8", "--model", "-o", "out.pgm", "--preview", "look.png"];
-    let ended = folder.halfrow(small("correct", &call));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    folder.halfrow(small("correct", &call)).succeeded();
     let image = halfrow::frames::read_rgb(&folder.path().join("look.png")).unwrap();
     // By IEC 61966-2-1, computed in Python: 66 and 77 of 255 become 139 and 149.
     let pixel = pixel(&image, 8, 64);

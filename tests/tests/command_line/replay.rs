@@ -53,8 +53,8 @@ fn no_files(_: &Folder) -> Vec<&'static str> {
 
 /// Makes a frame file and a table file.
 fn frame_and_tables(folder: &Folder) -> Vec<&'static str> {
-    assert_eq!(folder.halfrow(small("frames", &["--only", "street", "-o", "."])).code, Some(0));
-    assert_eq!(folder.halfrow(small("tables", &["--kernel", "keys", "-o", "lens.json"])).code, Some(0));
+    folder.halfrow(small("frames", &["--only", "street", "-o", "."])).succeeded();
+    folder.halfrow(small("tables", &["--kernel", "keys", "-o", "lens.json"])).succeeded();
     vec!["street.pgm", "lens.json"]
 }
 
@@ -141,7 +141,7 @@ fn a_recording_can_be_reported_on() {
 #[test]
 fn a_recording_is_no_hardware() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    folder.halfrow(small("verify", &["--record", "run.rec"])).succeeded();
     let call = ["verify", "--json", "--board", "replay:run.rec", "--require-hardware"];
     assert_eq!(folder.halfrow(call).code, Some(5));
 }
@@ -149,7 +149,7 @@ fn a_recording_is_no_hardware() {
 #[test]
 fn a_recording_that_breaks_off_is_judged_as_far_as_it_goes() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    folder.halfrow(small("verify", &["--record", "run.rec"])).succeeded();
     let whole = folder.read("run.rec");
     folder.write("half.rec", &whole[..whole.len() / 2]);
     let ended = folder.halfrow(["verify", "--json", "--board", "replay:half.rec"]);
@@ -161,7 +161,7 @@ fn a_recording_that_breaks_off_is_judged_as_far_as_it_goes() {
 #[test]
 fn a_recording_is_no_board_for_what_it_was_never_asked() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    folder.halfrow(small("verify", &["--record", "run.rec"])).succeeded();
     let soak = small("soak", &["--frames", "1", "--report", "out"]);
     let correct = small("correct", &["builtin:grey", "-o", "grey.pgm"]);
     for call in [vec!["info"], vec!["link"], vec!["serve"], soak, correct] {
@@ -187,7 +187,7 @@ fn what_is_no_recording_is_refused() {
     refused(&folder, &replay("replay:/dev/zero"), "/dev/zero is a pipe or a device");
     refused(&folder, &replay("replay"), "write replay:FILE");
     refused(&folder, &replay("replay:"), "write replay:FILE");
-    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    folder.halfrow(small("verify", &["--record", "run.rec"])).succeeded();
     refused(&folder, &replay("replay:run.rec,speed=1"), "the recording run.rec,speed=1 cannot be read");
 }
 
@@ -196,9 +196,8 @@ fn what_is_no_recording_is_refused() {
 fn a_recording_with_commas_in_its_name_is_judged_again() {
     for name in ["night, 2.rec", "a,b=1.rec"] {
         let folder = Folder::new();
-        assert_eq!(folder.halfrow(small("verify", &["--record", name])).code, Some(0));
-        let again = folder.halfrow(["verify", "--json", "--board", &format!("replay:{name}")]);
-        assert_eq!(again.code, Some(0), "{}", again.stderr);
+        folder.halfrow(small("verify", &["--record", name])).succeeded();
+        let again = folder.halfrow(["verify", "--json", "--board", &format!("replay:{name}")]).succeeded();
         assert_eq!(again.json()["board"]["target"], format!("replay:{name}"));
     }
 }
@@ -207,7 +206,7 @@ fn a_recording_with_commas_in_its_name_is_judged_again() {
 #[test]
 fn a_recording_of_more_frames_than_a_run_may_have_is_refused() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    folder.halfrow(small("verify", &["--record", "run.rec"])).succeeded();
     let recording = String::from_utf8_lossy(&folder.read("run.rec")).into_owned();
     assert!(recording.contains("\"repeat\":1"));
     folder.write("many.rec", recording.replacen("\"repeat\":1", "\"repeat\":4294967295", 1));
@@ -224,7 +223,7 @@ fn a_recording_that_is_there_is_kept() {
         "run.rec exists; allow it to be overwritten (--overwrite)",
     );
     assert_eq!(folder.text("run.rec"), "precious");
-    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec", "--overwrite"])).code, Some(0));
+    folder.halfrow(small("verify", &["--record", "run.rec", "--overwrite"])).succeeded();
     assert!(folder.read("run.rec").starts_with(b"halfrow recording 1\n"));
     assert_eq!(folder.names("."), ["run.rec"]);
 }
@@ -233,7 +232,7 @@ fn a_recording_that_is_there_is_kept() {
 fn a_recording_that_finds_no_space_is_no_pass_even_if_only_its_end_is_missing() {
     let folder = Folder::new();
     let call = |file| small("verify", &["--json", "--record", file]);
-    assert_eq!(folder.halfrow(call("whole.rec")).code, Some(0));
+    folder.halfrow(call("whole.rec")).succeeded();
     for blocks in [0, 8, folder.read("whole.rec").len() / 512 - 1] {
         let ended = folder.halfrow_on_a_full_disk(blocks, call("run.rec"));
         let said = ended.json();
@@ -269,7 +268,7 @@ fn a_recording_cannot_be_written_nowhere() {
 fn a_recording_is_not_opened_again() {
     let folder = Folder::new();
     let call = small("verify", &["--record", "run.rec", "--frame", "builtin:black", "--at-speed", "0"]);
-    assert_eq!(folder.halfrow(call).code, Some(0));
+    folder.halfrow(call).succeeded();
     let target = format!("replay:{}", folder.path().join("run.rec").display()).parse().unwrap();
     assert!(halfrow::link::open(&target).unwrap().reopen.is_none());
 }

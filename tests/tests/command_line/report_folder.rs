@@ -12,11 +12,10 @@ const FILES: [&str; 3] = ["report.html", "report.json", "report.xml"];
 #[test]
 fn the_folder_holds_the_report_in_three_views() {
     let folder = Folder::new();
-    let ended = folder.halfrow(small("verify", &["--report", "out", "--json"]));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = folder.halfrow(small("verify", &["--report", "out", "--json"])).succeeded();
     assert_eq!(folder.names("."), ["out"]);
     assert_eq!(folder.names("out"), FILES);
-    let written: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+    let written = folder.json("out/report.json");
     assert_eq!(written, ended.json());
     assert!(folder.text("out/report.html").contains("PASS"));
     let junit = folder.text("out/report.xml");
@@ -82,7 +81,7 @@ fn an_error_is_reported_as_an_error() {
 #[test]
 fn an_earlier_report_is_kept_unless_it_may_be_replaced() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("verify", &["--report", "out"])).code, Some(0));
+    folder.halfrow(small("verify", &["--report", "out"])).succeeded();
     let earlier = FILES.map(|name| folder.read(&format!("out/{name}")));
     let broken = small("verify", &["--report", "out", "--board", "mock,fault=late"]);
     refused(&folder, &broken, "out exists");
@@ -144,8 +143,7 @@ fn a_mount_point_is_refused_before_the_board_is_opened_and_a_folder_inside_it_is
     let earlier = "\"$1\" verify --width 64 --height 4 --report out/in && mv out/in/* out && rmdir out/in &&";
     let replaced = mounted(earlier, &["--report", "out", "--overwrite", "--board", board]);
     assert_eq!(replaced.code, Some(2), "{}", replaced.stderr);
-    let taken = mounted("", &["--report", "out/in"]);
-    assert_eq!(taken.code, Some(0), "{}", taken.stderr);
+    let taken = mounted("", &["--report", "out/in"]).succeeded();
     assert!(FILES.iter().all(|name| taken.stdout.contains(name)), "{}", taken.stdout);
 }
 

@@ -62,8 +62,7 @@ fn tables_are_made_with_the_kernel_of_the_settings() {
         folder.write(FILE, settings);
         let call = small("tables", &["--settings", FILE, "-o", "made.json", "--overwrite"]);
         let mut command = folder.command(call);
-        let ended = finish(command.args(more).envs(variable));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended = finish(command.args(more).envs(variable)).succeeded();
         ended.stdout.rsplit_once(", ").unwrap().1.to_owned()
     };
     let (file, variable) = ("kernel = 'keys'\n", Some(("HALFROW_KERNEL", "linear")));
@@ -77,13 +76,13 @@ fn tables_are_made_with_the_kernel_of_the_settings() {
 fn a_station_that_requires_hardware_judges_nothing_else() {
     let folder = Folder::new();
     assert_eq!(run(&folder, "require_hardware = true\n", None, &[]).code, Some(5));
-    assert_eq!(run(&folder, "require_hardware = false\n", None, &[]).code, Some(0));
+    run(&folder, "require_hardware = false\n", None, &[]).succeeded();
     assert_eq!(run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "true")), &[]).code, Some(5));
-    assert_eq!(run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "0")), &[]).code, Some(0));
+    run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "0")), &[]).succeeded();
     let (required, no) = ("require_hardware = true\n", Some(("HALFROW_REQUIRE_HARDWARE", "no")));
-    assert_eq!(run(&folder, required, no, &[]).code, Some(0));
+    run(&folder, required, no, &[]).succeeded();
     assert_eq!(run(&folder, required, no, &["--require-hardware"]).code, Some(5));
-    assert_eq!(run(&folder, required, None, &["--require-hardware=no"]).code, Some(0));
+    run(&folder, required, None, &["--require-hardware=no"]).succeeded();
     let unclear = run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "maybe")), &[]);
     assert_eq!(unclear.code, Some(2));
     assert!(unclear.stderr.contains("say yes or no"), "{}", unclear.stderr);
@@ -92,10 +91,9 @@ fn a_station_that_requires_hardware_judges_nothing_else() {
 #[test]
 fn frames_tables_and_report_come_from_the_file_too() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("tables", &["--radius", "500", "-o", "lens.json"])).code, Some(0));
+    folder.halfrow(small("tables", &["--radius", "500", "-o", "lens.json"])).succeeded();
     let settings = "frame = ['builtin:bars']\ntables = 'lens.json'\nreport = 'out'\n";
-    let ended = run(&folder, settings, None, &[]);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = run(&folder, settings, None, &[]).succeeded();
     let names: Vec<_> =
         ended.json()["frames"].as_array().unwrap().iter().map(|it| it["name"].clone()).collect();
     assert_eq!(names.iter().filter(|name| *name == "builtin:bars").count(), 1);
@@ -103,14 +101,14 @@ fn frames_tables_and_report_come_from_the_file_too() {
     assert_eq!(ended.json()["tables"]["source"], "lens.json");
     assert_eq!(folder.names("out").len(), 3);
     assert_eq!(run(&folder, settings, None, &[]).code, Some(2));
-    assert_eq!(run(&folder, &format!("{settings}overwrite = true\n"), None, &[]).code, Some(0));
+    run(&folder, &format!("{settings}overwrite = true\n"), None, &[]).succeeded();
 }
 
 /// Options that make tables are flags, so they take precedence over a table file that the station always uses.
 #[test]
 fn a_lens_on_the_command_line_beats_tables_from_elsewhere() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("tables", &["-o", "lens.json"])).code, Some(0));
+    folder.halfrow(small("tables", &["-o", "lens.json"])).succeeded();
     let (file, variable) = ("tables = 'lens.json'\n", Some(("HALFROW_TABLES", "lens.json")));
     for (settings, variable) in [(file, None), ("", variable)] {
         let source = |more: &[&str]| {
@@ -128,8 +126,7 @@ fn a_lens_on_the_command_line_beats_tables_from_elsewhere() {
     let ended = finish(folder.command(call).env("HALFROW_TABLES", "lens.json"));
     assert!(ended.stdout.contains("equidistant lens, R = 40.000 pixels"), "{}{}", ended.stdout, ended.stderr);
     let call = ["correct", "builtin:noise", "--model", "-o", "40.pgm"].into_iter().chain(sizes);
-    let ended = finish(folder.command(call).env("HALFROW_TABLES", "nowhere.json"));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    finish(folder.command(call).env("HALFROW_TABLES", "nowhere.json")).succeeded();
 }
 
 #[test]
@@ -137,9 +134,9 @@ fn limits_come_from_the_file_too() {
     let folder = Folder::new();
     let slow = ["--board", "mock,speed=1000"];
     assert_eq!(run(&folder, "timeout = 20\n", None, &slow).code, Some(3));
-    assert_eq!(run(&folder, "timeout = 20\n", Some(("HALFROW_TIMEOUT", "100000")), &slow).code, Some(0));
+    run(&folder, "timeout = 20\n", Some(("HALFROW_TIMEOUT", "100000")), &slow).succeeded();
     let poor = ["--board", "mock,fault=truncate,rate=0.05,seed=1"];
-    assert_eq!(run(&folder, "retry_limit = 100\n", None, &poor).code, Some(0));
+    run(&folder, "retry_limit = 100\n", None, &poor).succeeded();
     assert_eq!(run(&folder, "retry_limit = 0\n", None, &poor).code, Some(3));
 }
 
@@ -151,8 +148,7 @@ fn what_corrects_takes_tables_and_kernel_from_the_file_too() {
     assert_eq!(made.code, Some(0));
     let correct = ["correct", "builtin:noise", "--model", "--overwrite", "-o"];
     let corrected = |output, more: &[&'static str]| {
-        let ended = folder.halfrow(correct.into_iter().chain([output]).chain(more.iter().copied()));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.halfrow(correct.into_iter().chain([output]).chain(more.iter().copied())).succeeded();
         folder.read(output)
     };
     folder.write(FILE, "tables = 'lens.json'\nkernel = 'keys'\n");

@@ -48,7 +48,7 @@ fn an_interrupted_run_leaves_a_whole_report_that_says_so_and_a_recording() {
         assert_eq!(ended.code, Some(code));
         assert_eq!(folder.names("."), ["out", "run.rec"], "{signal}");
         assert_eq!(folder.names("out"), ["report.html", "report.json", "report.xml"]);
-        let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+        let report = folder.json("out/report.json");
         assert_eq!(report, ended.json());
         assert!(folder.text("out/report.html").trim_end().ends_with("</html>"));
         let again = folder.halfrow(["verify", "--board", "replay:run.rec"]);
@@ -73,7 +73,7 @@ fn an_interrupted_soak_has_told_its_minutes_and_leaves_what_was_judged() {
     running.send("INT");
     let ended = running.end();
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-    let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+    let report = folder.json("out/report.json");
     assert_eq!(report, ended.json());
     assert_eq!((&report["command"], &report["verdict"]), (&"soak".into(), &"ERROR".into()));
 }

@@ -27,7 +27,7 @@ fn a_waveform_is_written_and_never_over_another_file() {
     let folder = Folder::new();
     // Of `info` only, since the waveform of a whole run has gigabytes.
     let call = ["info", "--board", "sim,trace=run.vcd"];
-    assert_eq!(folder.halfrow(call.iter().copied()).code, Some(0));
+    folder.halfrow(call.iter().copied()).succeeded();
     let waveform = folder.text("run.vcd");
     assert!(waveform.contains("$timescale") && waveform.contains("out_sample"), "{}", &waveform[..400]);
     refused(&folder, &call, "run.vcd is there already");
@@ -59,7 +59,7 @@ fn a_waveform_is_never_written_through_a_link() {
 #[test]
 fn a_waveform_has_a_place_of_its_own_among_a_call_s_files() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("frames", &["--only", "black", "-o", "."])).code, Some(0));
+    folder.halfrow(small("frames", &["--only", "black", "-o", "."])).succeeded();
     let verify = |rest: &[&'static str]| small("verify", &[&["--board", "sim,trace=out"], rest].concat());
     let shared = "would both be written to";
     refused(&folder, &verify(&["--record", "out"]), shared);

@@ -8,7 +8,7 @@ use halfrow_tests::program::{Folder, command, finish};
 fn shell(folder: &Folder, text: &str, argument: &std::ffi::OsStr) {
     let mut shell = Command::new("sh");
     shell.current_dir(folder.path()).args(["-ec", text, "sh"]).arg(argument);
-    assert_eq!(finish(&mut shell).code, Some(0));
+    finish(&mut shell).succeeded();
 }
 
 #[test]

@@ -37,7 +37,7 @@ fn a_board_of_one_depth_has_no_other_one() {
 #[test]
 fn tables_of_a_file_stay_as_they_are() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("tables", &["-o", "lens.json"])).code, Some(0));
+    folder.halfrow(small("tables", &["-o", "lens.json"])).succeeded();
     let said = folder.halfrow(["verify", "--json", "--tables", "lens.json", "--at-speed", "0"]).json();
     assert!(said["frames"].as_array().unwrap().iter().all(|frame| frame["variation"].is_null()));
     let codes: Vec<_> =
@@ -62,7 +62,7 @@ fn a_pass_says_in_words_what_it_did_not_exercise() {
 fn a_recording_that_does_not_speak_of_variations_has_none() {
     let folder = Folder::new();
     let fixed = ["--bits", "12", "--centre-x", "63.5", "--record", "run.rec"];
-    assert_eq!(folder.halfrow(small("verify", &fixed)).code, Some(0));
+    folder.halfrow(small("verify", &fixed)).succeeded();
     let path = folder.path().join("run.rec");
     let bytes = std::fs::read(&path).unwrap();
     let key = br#""vary":{"centre":false,"depth":false},"#;

@@ -108,8 +108,7 @@ fn a_terminal_shows_the_text_in_colours_and_within_80_columns_however_wide_it_is
 
 #[test]
 fn the_list_names_every_frame_and_opens_no_board() {
-    let ended = halfrow(small("verify", &["--list", "--board", "mock,fault=disconnect,byte=0"]));
-    assert_eq!(ended.code, Some(0));
+    let ended = halfrow(small("verify", &["--list", "--board", "mock,fault=disconnect,byte=0"])).succeeded();
     let listed = ended.stdout.lines().take_while(|line| !line.is_empty());
     assert_eq!(listed.count(), 19);
     assert!(ended.stdout.contains("builtin:zone-plate"), "{}", ended.stdout);
@@ -170,8 +169,7 @@ fn the_log_goes_to_stderr_alone() {
     let poor = small("verify", &["--board", "mock,fault=drop,packet=60,toward=board"]);
     let quiet = halfrow(poor.clone());
     assert_eq!((quiet.code, quiet.stderr.as_str()), (Some(0), ""));
-    let talkative = halfrow(poor.into_iter().chain(["-v"]));
-    assert_eq!(talkative.code, Some(0));
+    let talkative = halfrow(poor.into_iter().chain(["-v"])).succeeded();
     assert!(talkative.stderr.contains("is missing; sending it again"), "{}", talkative.stderr);
     assert!(!talkative.stdout.contains("INFO"), "{}", talkative.stdout);
 }
@@ -233,8 +231,7 @@ fn a_run_whose_board_is_silent_when_its_time_ends_says_so() {
 #[test]
 fn a_stricter_limit_on_retries_makes_a_link_too_poor() {
     let board = "mock,fault=truncate,rate=0.05,seed=1";
-    let lenient = halfrow(small("verify", &["--board", board, "--retry-limit", "100"]));
-    assert_eq!(lenient.code, Some(0), "{}", lenient.stdout);
+    halfrow(small("verify", &["--board", board, "--retry-limit", "100"])).succeeded();
     let strict = halfrow(small("verify", &["--board", board, "--retry-limit", "0"]));
     assert_eq!(strict.code, Some(3), "{}", strict.stdout);
     assert!(strict.stdout.contains("the link is too poor to judge a board over"), "{}", strict.stdout);
@@ -264,7 +261,7 @@ fn limits_that_make_no_sense_are_refused() {
 #[test]
 fn the_time_limit_is_also_this_computer_s() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    folder.halfrow(small("verify", &["--record", "run.rec"])).succeeded();
     let mock = folder.halfrow(small("verify", &["--timeout", "1e-5"]));
     let replay = folder.halfrow(["verify", "--board", "replay:run.rec", "--timeout", "1e-5"]);
     for ended in [mock, replay] {
@@ -317,13 +314,13 @@ fn bytes_that_are_no_packets_are_told_from_silence() {
 fn a_board_that_cannot_be_opened_has_a_report_too() {
     let folder = Folder::new();
     let into = ["--report", "out", "--overwrite"];
-    assert_eq!(folder.halfrow(small("verify", &into)).code, Some(0));
+    folder.halfrow(small("verify", &into)).succeeded();
     for command in ["verify", "soak"] {
         let absent = [&into[..], &["--board", "serial:/dev/no-such-port"]].concat();
         let absent = if command == "soak" { [&absent[..], &["--frames", "1"]].concat() } else { absent };
         let ended = folder.halfrow(small(command, &absent));
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(3), ""), "{}", ended.stderr);
-        let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+        let report = folder.json("out/report.json");
         assert_eq!(report["verdict"], "ERROR");
         assert!(ended.stderr.contains(report["error"]["message"].as_str().unwrap()), "{report}");
         assert!(folder.text("out/report.xml").contains("errors=\"2\""));
@@ -347,7 +344,7 @@ fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
         &call("mock").collect::<Vec<_>>(),
         "or the built-in mock with room for these: mock,max-width=2592",
     );
-    assert_eq!(halfrow(call("mock,max-width=2592")).code, Some(0));
+    halfrow(call("mock,max-width=2592")).succeeded();
     let high = ["verify", "-q", "--board", "mock,max-height=8", "--width", "64", "--height", "9"];
     refused(&Folder::new(), &high, "room for these: mock,max-width=64,max-height=9");
 }
@@ -372,8 +369,7 @@ fn a_virtual_clock_measures_nothing_of_a_link() {
 fn the_street_behind_a_table_file_is_said_to_be_seen_through_a_lens_of_its_own() {
     let folder = Folder::new();
     let size = ["--width", "640", "--height", "480", "--radius", "400"];
-    let made = folder.halfrow(["tables", "-o", "my.json"].into_iter().chain(size));
-    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    folder.halfrow(["tables", "-o", "my.json"].into_iter().chain(size)).succeeded();
     let street = ["verify", "-q", "--frame", "builtin:street"];
     let words = |told: &str| told.split_whitespace().collect::<Vec<_>>().join(" ");
     let said = "; it is seen through a lens that the tables may not be for link ";

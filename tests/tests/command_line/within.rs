@@ -1,7 +1,5 @@
 //! `verify --within SECONDS`.
 
-use serde_json::Value;
-
 use super::{refused, small};
 use halfrow_tests::program::{Folder, command, finish};
 
@@ -40,8 +38,7 @@ fn too_few_seconds_end_with_2_and_the_least_that_this_link_needs() {
     assert_eq!(error["parameters"]["seconds"], 0.3);
     let sentence = format!("give at least {least} s");
     refused(&folder, &call(&["--within", "0.3"]), &sentence);
-    let enough = folder.halfrow(call(&["-q", "--within", &least.to_string()]));
-    assert_eq!(enough.code, Some(0), "{}{}", enough.stdout, enough.stderr);
+    folder.halfrow(call(&["-q", "--within", &least.to_string()])).succeeded();
 
     let error = said(&["--within", "3", "--at-speed", "3"]);
     assert_eq!(error["code"], "seconds-too-few-at-speed");
@@ -63,8 +60,7 @@ fn a_packet_that_the_link_loses_does_not_make_a_call_wrong() {
 fn a_pass_within_a_time_says_how_many_parts_were_left_out() {
     let folder = Folder::new();
     let call = ["verify", "-q", "--within", "5", "--board", "mock,speed=300000"];
-    let ended = folder.halfrow(call);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let ended = folder.halfrow(call).succeeded();
     let last = ended.stdout.lines().last().unwrap();
     assert!(last.starts_with("PASS") && last.contains(", within 5.0 s: 16 parts left out, "), "{last}");
 }
@@ -100,8 +96,7 @@ fn a_clock_that_the_board_names_is_not_told_as_the_link_s_or_the_call_s() {
         (Some("seconds-too-few-for-named-clock"), Some(1))
     );
     let least = error["parameters"]["least"].as_f64().unwrap();
-    let enough = judged(&least.to_string());
-    assert_eq!(enough.code, Some(0), "{}{}", enough.stdout, enough.stderr);
+    let enough = judged(&least.to_string()).succeeded();
     let untested = enough.json()["not_exercised"].clone();
     let named = untested.as_array().unwrap().iter().find(|part| part["code"] == "unseen-clock");
     assert_eq!(named.unwrap()["parameters"]["clock_hz"], 1, "{untested}");
@@ -110,19 +105,17 @@ fn a_clock_that_the_board_names_is_not_told_as_the_link_s_or_the_call_s() {
 #[test]
 fn frames_of_the_environment_are_passed_over() {
     let mut run = command(call(&["-q", "--json", "--within", "3"]));
-    let ended = finish(run.env("HALFROW_FRAME", "missing.pgm"));
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    finish(run.env("HALFROW_FRAME", "missing.pgm")).succeeded();
 }
 
 #[test]
 fn what_was_taken_and_left_out_stands_in_text_json_and_page() {
     let folder = Folder::new();
-    let text = folder.halfrow(call(&["-q", "--within", "2.5", "--report", "out"]));
-    assert_eq!(text.code, Some(0), "{}{}", text.stdout, text.stderr);
+    let text = folder.halfrow(call(&["-q", "--within", "2.5", "--report", "out"])).succeeded();
     for told in ["within   expected to take", "within   covers", "within   leaves out", "rows"] {
         assert!(text.stdout.contains(told), "{told}: {}", text.stdout);
     }
-    let report: Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+    let report = folder.json("out/report.json");
     let within = &report["within"];
     assert_eq!(within["seconds"], 2.5);
     assert!(report["link"]["seconds"].as_f64().unwrap() <= 2.5, "{}", report["link"]);

@@ -12,8 +12,7 @@ use serde_json::{Value, json};
 
 /// What `halfrow boards` says about `target` alone.
 fn look_at(target: &str, more: &[&str]) -> Value {
-    let ended = halfrow(["boards", "--json", target].into_iter().chain(more.iter().copied()));
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = halfrow(["boards", "--json", target].into_iter().chain(more.iter().copied())).succeeded();
     ended.json()["boards"][0].clone()
 }
 

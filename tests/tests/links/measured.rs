@@ -12,8 +12,7 @@ fn measure(target: &str) -> Ended {
 #[test]
 fn a_wire_is_measured_to_be_what_it_is() {
     // 1.2 MB/s, and 1 ms each way.
-    let ended = measure("mock,speed=1200000,delay=0.001");
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let ended = measure("mock,speed=1200000,delay=0.001").succeeded();
     let figures = &ended.json()["link"];
     assert_eq!((figures["limit"].as_f64(), figures["errors"]["wrong"].as_u64()), (Some(1.2e6), Some(0)));
     // An empty packet takes 18 or 19 bytes, so the round trip is 2 ms and some 31 µs.
@@ -37,8 +36,7 @@ fn errors_are_counted_on_either_side() {
     for (toward, counter, other) in
         [("board", "damaged_out", "damaged_in"), ("host", "damaged_in", "damaged_out")]
     {
-        let ended = measure(&format!("mock,speed=1200000,fault=flip,rate=1e-5,toward={toward}"));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended = measure(&format!("mock,speed=1200000,fault=flip,rate=1e-5,toward={toward}")).succeeded();
         let errors = &ended.json()["link"]["errors"];
         let (damaged, bytes) = (errors[counter].as_f64().unwrap(), errors["bytes"].as_f64().unwrap());
         // One byte in 100,000, and about half of all bytes go this way.
@@ -51,8 +49,7 @@ fn errors_are_counted_on_either_side() {
 #[test]
 fn a_real_link_is_measured_and_its_board_left_free() {
     for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {
-        let ended = measure(&served.target());
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ended = measure(&served.target()).succeeded();
         let said = ended.json();
         assert_eq!((&said["board"]["kind"], &said["verdict"]), (&"mock".into(), &serde_json::Value::Null));
         assert!(said["link"]["together"]["out"]["bytes_per_second"].as_f64().unwrap() > 0.0);
@@ -80,7 +77,7 @@ fn a_link_is_told_to_be_good_enough_for_a_run_or_too_poor() {
             target,
         ])
     };
-    assert_eq!(judged("mock,speed=1200000").code, Some(0));
+    judged("mock,speed=1200000").succeeded();
     ends(&judged("mock,fault=flip,rate=1e-4,speed=300000"), 3, "the link is too poor");
 }
 

@@ -83,8 +83,7 @@ fn a_board_behind_ser2net_passes_again_and_again() {
     let served = Served::on_a_serial_port("mock");
     let ser2net = Ser2net::start(&folder, Path::new(served.address()));
     for _ in 0..2 {
-        let ended = verify(&ser2net.target(), &[]);
-        assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+        let ended = verify(&ser2net.target(), &[]).succeeded();
         assert_eq!(ended.json()["board"]["kind"], "mock");
     }
 }
@@ -119,7 +118,6 @@ fn a_run_goes_on_when_the_board_behind_ser2net_comes_back() {
     let path = folder.path().join("board");
     let served = Served::unplugged_once("mock", &path, 5000, Some(Replug::Powered));
     let ser2net = Ser2net::start(&folder, Path::new(served.address()));
-    let ended = verify(&ser2net.target(), &["--reconnect=300"]);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let ended = verify(&ser2net.target(), &["--reconnect=300"]).succeeded();
     assert_eq!(ended.json()["link"]["reconnections"].as_array().unwrap().len(), 1);
 }

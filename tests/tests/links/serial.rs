@@ -27,8 +27,8 @@ fn a_board_behind_a_serial_port_passes_again_and_again() {
 fn a_pseudo_terminal_takes_every_rate() {
     for baud in [9600, 115_200, 7_000_000, 12_000_000] {
         let served = Served::on_a_serial_port("mock");
-        let ended = verify(&format!("{},baud={baud},flow=none,dtr=off,rts=off", served.target()), &[]);
-        assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+        let ended =
+            verify(&format!("{},baud={baud},flow=none,dtr=off,rts=off", served.target()), &[]).succeeded();
         assert!(ended.json()["link"]["name"].as_str().unwrap().contains(&format!("({baud} baud)")));
     }
 }
@@ -51,8 +51,7 @@ fn a_port_that_is_not_there_is_an_error_of_the_station() {
 #[test]
 fn a_port_is_set_as_the_board_that_is_named_needs_it() {
     let served = Served::on_a_serial_port("mock");
-    let ended = verify(&format!("{},board=ulx3s", served.target()), &[]);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let ended = verify(&format!("{},board=ulx3s", served.target()), &[]).succeeded();
     assert!(ended.json()["link"]["name"].as_str().unwrap().contains("(3000000 baud)"), "{}", ended.stdout);
     let contradicts = verify("serial:/dev/ttyUSB99,board=ulx3s,baud=115200", &[]);
     ends(&contradicts, 2, "`baud=115200` contradicts `board=ulx3s`, which means baud=3000000,flow=none");

@@ -93,8 +93,7 @@ fn a_board_held_by_another_host_is_busy_over_the_network() {
     // A run that is killed does not close its session.
     drop(streaming(&served));
     ends(&verify(&served.target(), &[]), 4, "another host holds the board");
-    let taken = program::halfrow(["info", "--take-over", "--board", &served.target()]);
-    assert_eq!(taken.code, Some(0), "{}", taken.stderr);
+    program::halfrow(["info", "--take-over", "--board", &served.target()]).succeeded();
 }
 
 /// It may open no more files than it has open when it waits.
@@ -104,16 +103,14 @@ fn a_host_that_cannot_be_let_in_is_told_of_and_served_when_it_can() {
     let id = server.running.id().to_string();
     let limit = |files: &str| {
         let mut command = Command::new("prlimit");
-        let ended = program::finish(command.args(["--pid", &id, &format!("--nofile={files}:")]));
-        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        program::finish(command.args(["--pid", &id, &format!("--nofile={files}:")])).succeeded();
     };
     limit("3");
     let host = TcpStream::connect(server.target.strip_prefix("tcp:").unwrap()).unwrap();
     server.running.wait_for("no host can be let in");
     drop(host);
     limit("256");
-    let ended = verify(&server.target, &[]);
-    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    verify(&server.target, &[]).succeeded();
     assert_eq!(server.end("TERM"), Some(0));
 }
 

@@ -25,8 +25,7 @@ fn of_two_boards_the_user_chooses_one() {
     );
     assert_eq!(ended.headline(), expected);
     for target in ["usb:HR000002".to_owned(), format!("usb:{second}")] {
-        let ended = verify(&target);
-        assert_eq!(ended.code, Some(0), "{ended:?}");
+        let ended = verify(&target).succeeded();
         assert!(ended.json()["link"]["name"].as_str().unwrap().contains("HR000002"), "{ended:?}");
     }
 }
@@ -42,8 +41,7 @@ fn boards_of_one_name_are_told_by_their_places() {
         assert!(ended.headline().contains(&format!("usb:{place} (")), "{ended:?}");
     }
     let target = format!("usb:{}", second.bus_name());
-    let ended = verify(&target);
-    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let ended = verify(&target).succeeded();
     assert!(ended.json()["link"]["name"].as_str().unwrap().starts_with(&target), "{ended:?}");
     let listed = halfrow(["boards", "--json"]).json();
     let targets: Vec<_> =
