@@ -132,85 +132,49 @@ fn capabilities() -> impl Strategy<Value = Capabilities> {
     // The name: sixty characters are at most 240 bytes, and a name has at most 255.
     let further = (proptest::option::of(bursts()), proptest::option::of(grids()));
     (any::<([u16; 5], [u8; 9], u32, bool)>(), further, nature, "\\PC{0,60}").prop_map(
-        |((words, bytes, clock_hz, entered), (bursts, grids), nature, name)| {
-            let [datapath, max_width, max_height, ring, least_blanking] = words;
-            let [
-                depths,
-                taps,
-                latency,
-                table_banks,
-                row_banks_in,
-                row_banks_out,
-                step_ports,
-                kernel_ports,
-                clock_source,
-            ] = bytes;
-            Capabilities {
-                datapath,
-                max_width,
-                max_height,
-                depths,
-                taps,
-                latency,
-                ring,
-                least_blanking,
-                table_banks,
-                row_banks_in,
-                row_banks_out,
-                step_ports,
-                kernel_ports,
-                clock_source,
-                clock_hz,
-                bursts,
-                entered,
-                grids,
-                nature,
-                name,
-            }
+        |((words, bytes, clock_hz, entered), (bursts, grids), nature, name)| Capabilities {
+            datapath: words[0],
+            max_width: words[1],
+            max_height: words[2],
+            depths: bytes[0],
+            taps: bytes[1],
+            latency: bytes[2],
+            ring: words[3],
+            least_blanking: words[4],
+            table_banks: bytes[3],
+            row_banks_in: bytes[4],
+            row_banks_out: bytes[5],
+            step_ports: bytes[6],
+            kernel_ports: bytes[7],
+            clock_source: bytes[8],
+            clock_hz,
+            bursts,
+            entered,
+            grids,
+            nature,
+            name,
         },
     )
 }
 
 fn status() -> impl Strategy<Value = Status> {
-    any::<([u32; 8], [u32; 8])>().prop_map(|(traffic, rows)| {
-        let [
-            packets,
-            crc_errors,
-            framing_errors,
-            foreign_packets,
-            refusals,
-            rows_in,
-            rows_out,
-            rows_repeated,
-        ] = traffic;
-        let [
-            rows_unneeded,
-            samples_over,
-            next_row_in,
-            next_row_out,
-            core_busy,
-            generation,
-            least_latency,
-            most_latency,
-        ] = rows;
-        Status {
-            packets,
-            crc_errors,
-            framing_errors,
-            foreign_packets,
-            refusals,
-            rows_in,
-            rows_out,
-            rows_repeated,
-            rows_unneeded,
-            samples_over,
-            next_row_in,
-            next_row_out,
-            core_busy,
-            generation,
-            least_latency,
-            most_latency,
-        }
+    any::<[u32; 16]>().prop_map(|numbers| Status {
+        packets: numbers[0],
+        crc_errors: numbers[1],
+        framing_errors: numbers[2],
+        foreign_packets: numbers[3],
+        refusals: numbers[4],
+        rows_in: numbers[5],
+        rows_out: numbers[6],
+        rows_repeated: numbers[7],
+        rows_unneeded: numbers[8],
+        samples_over: numbers[9],
+        next_row_in: numbers[10],
+        next_row_out: numbers[11],
+        core_busy: numbers[12],
+        generation: numbers[13],
+        least_latency: numbers[14],
+        most_latency: numbers[15],
     })
 }
 
