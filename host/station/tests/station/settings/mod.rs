@@ -144,152 +144,130 @@ fn what_is_left_out_is_as_the_pages_say() {
     assert_eq!(settings.sinks.iter().map(port).collect::<Vec<_>>(), [8883, 1883]);
 }
 
-/// A change of [`WHOLE`], and how the error begins, which names the line.
-const WRONG: &[(&str, &str, &str)] = &[
-    ("schema = 1", "schema = 9", "station.toml:1: this program reads settings of schema 1, not 9; take the"),
-    ("name = \"12\"", "name = \" \"", "station.toml:3: there is nothing here; write a name"),
-    ("order = \"scan", "order = \"plug", "station.toml:5: unknown variant `plug-then-plug`"),
-    ("silence = 30.0", "silence = 0.0", "station.toml:6: 0 s is no such time; give 0.1 to 86400 seconds"),
-    ("silence = 30.0", "silense = 30.0", "station.toml:6: unknown field `silense`"),
-    ("memory = 512", "memory = 1", "station.toml:7: 1 MiB are no memory for a lane; give 64 to 1048576 MiB"),
-    ("name = \"1\"", "name = \"1 2\"", "station.toml:18: `1 2` is no name for a lane; write 1 to 16 letters"),
-    ("name = \"1\"", "name = \"left\"", "station.toml:23: two lanes are called left; give each"),
-    (
-        "localhost/plant",
-        "localhost",
-        "station.toml:12: the plant cannot be used: the plant's address says no database",
-    ),
-    (
-        "halfrow@",
-        "halfrow:secret@",
-        "station.toml:12: the plant cannot be used: the plant's address has a password",
-    ),
-    (
-        "postgres://",
-        "mysql://",
-        "station.toml:12: the plant cannot be used: this is no address of a plant; write it as",
-    ),
+/// A change of [`WHOLE`], the line that is then wrong, and how that is told.
+const WRONG: &[(&str, &str, u32, &str)] = &[
+    ("schema = 1", "schema = 9", 1, "this program reads settings of schema 1, not 9; take the"),
+    ("name = \"12\"", "name = \" \"", 3, "there is nothing here; write a name"),
+    ("order = \"scan", "order = \"plug", 5, "unknown variant `plug-then-plug`"),
+    ("silence = 30.0", "silence = 0.0", 6, "0 s is no such time; give 0.1 to 86400 seconds"),
+    ("silence = 30.0", "silense = 30.0", 6, "unknown field `silense`"),
+    ("memory = 512", "memory = 1", 7, "1 MiB are no memory for a lane; give 64 to 1048576 MiB"),
+    ("name = \"1\"", "name = \"1 2\"", 18, "`1 2` is no name for a lane; write 1 to 16 letters"),
+    ("name = \"1\"", "name = \"left\"", 23, "two lanes are called left; give each"),
+    ("localhost/plant", "localhost", 12, "the plant cannot be used: the plant's address says no database"),
+    ("halfrow@", "halfrow:secret@", 12, "the plant cannot be used: the plant's address has a password"),
+    ("postgres://", "mysql://", 12, "the plant cannot be used: this is no address of a plant; write it as"),
     (
         "localhost/plant\"",
         "db.example/plant\"\nca = \"none.pem\"",
-        "station.toml:13: the file of the plant's certificates cannot be used: ",
+        13,
+        "the file of the plant's certificates cannot be used: ",
     ),
-    ("\"plant.password\"", "\"\"", "station.toml:13: there is nothing here; write a name"),
-    ("green = \"plant\"", "green = \"blue\"", "station.toml:14: unknown variant `blue`"),
-    (
-        "most_unsent = 500",
-        "most_unsent = 0",
-        "station.toml:15: with none unsent no lane could judge; give 1 or more",
-    ),
-    (
-        "most_filled = 90",
-        "most_filled = 101",
-        "station.toml:16: a disk cannot be full to 101 %; give 1 to 100",
-    ),
-    ("usb:1-2.3", "labgrid", "station.toml:19: `labgrid` names no place of labgrid's; write labgrid:PLACE"),
-    (
-        "usb:1-2.3",
-        "labgrid:a,baud=9600",
-        "station.toml:19: `labgrid:a,baud=9600` names no place of labgrid's",
-    ),
-    ("[[on-error]]", "[labgrid]\ndeadline = 0.0\n[[on-error]]", "station.toml:30: 0 s is no such time"),
-    ("[[on-error]]", "[labgrid]\nprogram = \"\"\n[[on-error]]", "station.toml:30: there is nothing here"),
-    ("[[on-error]]", "[labgrid]\nplace = \"a\"\n[[on-error]]", "station.toml:30: unknown field `place`"),
-    ("usb:1-2.3", "usb", "station.toml:19: `usb` is whichever board is plugged in; write usb:"),
-    ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:19: `serial:/dev/ttyUSB0` is another board when"),
-    (
-        "usb:1-2.3",
-        "usv:1-2.3",
-        "station.toml:19: `usv` is not a kind of board; write one as `halfrow boards`",
-    ),
-    ("usb:1-2.3", "", "station.toml:19: the board cannot be used: an empty target names no board"),
+    ("\"plant.password\"", "\"\"", 13, "there is nothing here; write a name"),
+    ("green = \"plant\"", "green = \"blue\"", 14, "unknown variant `blue`"),
+    ("most_unsent = 500", "most_unsent = 0", 15, "with none unsent no lane could judge; give 1 or more"),
+    ("most_filled = 90", "most_filled = 101", 16, "a disk cannot be full to 101 %; give 1 to 100"),
+    ("usb:1-2.3", "labgrid", 19, "`labgrid` names no place of labgrid's; write labgrid:PLACE"),
+    ("usb:1-2.3", "labgrid:a,baud=9600", 19, "`labgrid:a,baud=9600` names no place of labgrid's"),
+    ("usb:1-2.3", "usb", 19, "`usb` is whichever board is plugged in; write usb:"),
+    ("usb:1-2.3", "serial:/dev/ttyUSB0", 19, "`serial:/dev/ttyUSB0` is another board when"),
+    ("usb:1-2.3", "usv:1-2.3", 19, "`usv` is not a kind of board; write one as `halfrow boards`"),
+    ("usb:1-2.3", "", 19, "the board cannot be used: an empty target names no board"),
     (
         "mock,serial=1",
         "mock,fault=zz",
-        "station.toml:24: the board cannot be used: the target `mock,fault=zz` does not suit",
+        24,
+        "the board cannot be used: the target `mock,fault=zz` does not suit",
     ),
-    ("\"mock,serial=1\"", "\"usb:1-2.3,channel=a\"", "station.toml:24: lane 1 has the board"),
-    ("[\"b.toml\"]", "[]", "station.toml:25: lane left has no plan; name the file of one"),
-    (
-        "[\"b.toml\"]",
-        "[\"c.toml\"]",
-        "station.toml:25: the plan c.toml cannot be used: c.toml cannot be read",
-    ),
-    (
-        "[\"scan\", \"button\"]",
-        "[]",
-        "station.toml:21: nothing starts this lane; name scan, button or presence",
-    ),
+    ("\"mock,serial=1\"", "\"usb:1-2.3,channel=a\"", 24, "lane 1 has the board"),
+    ("[\"b.toml\"]", "[]", 25, "lane left has no plan; name the file of one"),
+    ("[\"b.toml\"]", "[\"c.toml\"]", 25, "the plan c.toml cannot be used: c.toml cannot be read"),
+    ("[\"scan\", \"button\"]", "[]", 21, "nothing starts this lane; name scan, button or presence"),
     (
         "\"mock,serial=1\"\n",
         "\"mock,serial=1\"\nstart = [\"presence\"]\n",
-        "station.toml:25: nobody sees the board `mock,serial=1` being plugged in, so nothing starts this lane; name scan or button",
+        25,
+        "nobody sees the board `mock,serial=1` being plugged in, so nothing starts this lane; name scan or button",
     ),
     (
         "\"mock,serial=1\"\n",
         "\"tcp:bench:3001\"\nstart = [\"presence\"]\n",
-        "station.toml:25: nobody sees the board `tcp:bench:3001` being plugged in",
+        25,
+        "nobody sees the board `tcp:bench:3001` being plugged in",
     ),
     (
         "\"mock,serial=1\"\n",
         "\"labgrid:rack-3\"\nstart = [\"presence\"]\n",
-        "station.toml:25: nobody sees the board `labgrid:rack-3` being plugged in",
+        25,
+        "nobody sees the board `labgrid:rack-3` being plugged in",
     ),
-    ("{lane}", "{line}", "station.toml:28: nothing is known that is called {line}; write one of {lane}"),
-    ("./print", "./brint", "there is no program"),
-    (
-        "[[on-error]]",
-        "[web]\nlisten = \"127.0.0.1:1\"\npublic = \"station12\"\n[[on-error]]",
-        "station.toml:31: the address cannot be used: `station12` is not where browsers find a station",
-    ),
-    (
-        "[[on-error]]",
-        "[web]\nlisten = \"127.0.0.1\"\npublic = \"https://a.example\"\n[[on-error]]",
-        "station.toml:30: the address cannot be used: `127.0.0.1` is no address to listen on",
-    ),
-    (
-        "[[on-error]]",
-        "[web]\nlisten = \"127.0.0.1:1\"\npublic = \"https://a.example\"\n[[on-error]]",
-        "station.toml:31: others can reach these pages, and nobody logs in",
-    ),
-    (
-        "[[on-error]]",
-        "[web]\nhosts = [\"localhost\", \"a.example\"]\n[[on-error]]",
-        "station.toml:30: others can reach these pages, and nobody logs in",
-    ),
-    (
-        "[[on-error]]",
-        "[web]\nlisten = \"0.0.0.0:1\"\nhosts = [\"a.example\"]\n[[on-error]]",
-        "station.toml:30: others can reach these pages, and nobody logs in",
-    ),
-    (
-        "[[on-error]]",
-        "[web]\nhosts = [\"http://localhost:8612\"]\n[[on-error]]",
-        "station.toml:30: the address cannot be used: `http://localhost:8612` is no name by which browsers ask",
-    ),
-    (
-        "[[on-error]]",
-        "[web]\nlisten = \"0.0.0.0:1\"\nhosts = [\"\"]\n[access]\nusers = \"u\"\n[[on-error]]",
-        "station.toml:31: the address cannot be used: `` is no name by which browsers ask",
-    ),
-    ("[\"b.toml\"]", "[\" \"]", "station.toml:25: there is nothing here; write a name"),
-    ("deadline = 2.5", "deadline = -1.0", "station.toml:31: -1 s is no such time"),
+    ("{lane}", "{line}", 28, "nothing is known that is called {line}; write one of {lane}"),
+    ("[\"b.toml\"]", "[\" \"]", 25, "there is nothing here; write a name"),
+    ("deadline = 2.5", "deadline = -1.0", 31, "-1 s is no such time"),
     (
         "\"a.toml\", \"b.toml\"",
         "\"a.toml\", \"b.toml\", \"./a.toml\"",
-        "station.toml:20: lane 1 has the plan ./a.toml twice, first as a.toml; leave one of them out",
+        20,
+        "lane 1 has the plan ./a.toml twice, first as a.toml; leave one of them out",
     ),
-    ("usb:1-2.3", "tcp:127.0.0.1:99999", "station.toml:19: the board cannot be used: "),
-    ("mock,serial=1", "mock,serial=1,fault=nope", "station.toml:24: the board cannot be used: "),
+    ("usb:1-2.3", "tcp:127.0.0.1:99999", 19, "the board cannot be used: "),
+    ("mock,serial=1", "mock,serial=1,fault=nope", 24, "the board cannot be used: "),
+];
+
+/// What [`WHOLE`] gets in front of `[[on-error]]`, the line that is then wrong, and how that is told.
+const ADDED: &[(&str, u32, &str)] = &[
+    ("[labgrid]\ndeadline = 0.0", 30, "0 s is no such time"),
+    ("[labgrid]\nprogram = \"\"", 30, "there is nothing here"),
+    ("[labgrid]\nplace = \"a\"", 30, "unknown field `place`"),
+    (
+        "[web]\nlisten = \"127.0.0.1:1\"\npublic = \"station12\"",
+        31,
+        "the address cannot be used: `station12` is not where browsers find a station",
+    ),
+    (
+        "[web]\nlisten = \"127.0.0.1\"\npublic = \"https://a.example\"",
+        30,
+        "the address cannot be used: `127.0.0.1` is no address to listen on",
+    ),
+    (
+        "[web]\nlisten = \"127.0.0.1:1\"\npublic = \"https://a.example\"",
+        31,
+        "others can reach these pages, and nobody logs in",
+    ),
+    ("[web]\nhosts = [\"localhost\", \"a.example\"]", 30, "others can reach these pages, and nobody logs in"),
+    (
+        "[web]\nlisten = \"0.0.0.0:1\"\nhosts = [\"a.example\"]",
+        30,
+        "others can reach these pages, and nobody logs in",
+    ),
+    (
+        "[web]\nhosts = [\"http://localhost:8612\"]",
+        30,
+        "the address cannot be used: `http://localhost:8612` is no name by which browsers ask",
+    ),
+    (
+        "[web]\nlisten = \"0.0.0.0:1\"\nhosts = [\"\"]\n[access]\nusers = \"u\"",
+        31,
+        "the address cannot be used: `` is no name by which browsers ask",
+    ),
 ];
 
 #[test]
 fn what_is_wrong_is_told_with_its_line_and_a_remedy() {
-    for (from, to, said) in WRONG {
+    let changed = |from: &str, to: &str| {
         assert!(WHOLE.contains(from), "{from}");
-        let error = load(&WHOLE.replacen(from, to, 1)).unwrap_err();
-        assert!(error.contains(said), "{from} -> {to}: {error}");
+        load(&WHOLE.replacen(from, to, 1)).unwrap_err()
+    };
+    for (from, to, line, said) in WRONG {
+        let error = changed(from, to);
+        assert!(error.starts_with(&format!("station.toml:{line}: {said}")), "{from} -> {to}: {error}");
     }
+    for (table, line, said) in ADDED {
+        let error = changed("[[on-error]]", &format!("{table}\n[[on-error]]"));
+        assert!(error.starts_with(&format!("station.toml:{line}: {said}")), "{table}: {error}");
+    }
+    let error = changed("./print", "./brint");
+    assert!(error.contains("there is no program"), "{error}");
     let error = load("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n").unwrap_err();
     assert_eq!(error, "station.toml:1: the station has no lane; write a [[lane]] with name, board and plans");
 }
