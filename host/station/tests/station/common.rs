@@ -164,6 +164,17 @@ impl Drop for Over<'_> {
     }
 }
 
+/// A lane with a mock board.
+pub(crate) const LANE: &str = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
+
+/// Writes [`PLAN`] and the settings of a station of this name, which stores in `data`, into `folder`; returns the latter's path.
+pub(crate) fn settings(folder: &Path, name: &str, data: &str, more: &str) -> PathBuf {
+    fs::write(folder.join("plan.toml"), PLAN).unwrap();
+    let path = folder.join("station.toml");
+    fs::write(&path, format!("schema = 1\n[station]\nname = \"{name}\"\ndata = \"{data}\"\n{more}")).unwrap();
+    path
+}
+
 /// `[plant]` of a station whose results go to `url`, however full the disk of the tests is.
 pub(crate) fn plant_settings(url: &str) -> String {
     format!("[plant]\nurl = \"{url}\"\nmost_filled = 100\n")
@@ -195,6 +206,25 @@ impl From<Output> for Did {
 /// What the program does when it is called so.
 pub(crate) fn did(arguments: &[&str]) -> Did {
     Command::new(program()).args(arguments).output().unwrap().into()
+}
+
+/// A call of the program with the settings in this folder.
+pub(crate) fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(program());
+    command.args(arguments).arg("--settings").arg(folder.join("station.toml"));
+    command
+}
+
+/// What the program does when it is called so with the settings in this folder.
+pub(crate) fn did_in(folder: &Path, arguments: &[&str]) -> Did {
+    command(folder, arguments).output().unwrap().into()
+}
+
+/// Puts `is` in the place of `was` wherever that stands in a file, as it must.
+pub(crate) fn instead(path: impl AsRef<Path>, was: &str, is: &str) {
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains(was), "no `{was}` in {text}");
+    fs::write(path, text.replace(was, is)).unwrap();
 }
 
 /// Makes the database refuse new entries in the audit.

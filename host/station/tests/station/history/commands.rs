@@ -8,14 +8,14 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run};
-use crate::common::program;
+use crate::common::{Did, program};
 use crate::held;
 
 /// Runs a command; returns its exit code, stdout and stderr.
 pub(crate) fn did(made: &impl AsRef<Path>, arguments: &[&str]) -> (i32, String, String) {
     let output = Command::new(program()).args(arguments).arg("--data").arg(made.as_ref()).output().unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    let Did { code, said, complained } = output.into();
+    (code.unwrap(), said, complained)
 }
 
 fn said(made: &impl AsRef<Path>, arguments: &[&str]) -> String {

@@ -2,13 +2,12 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use halfrow_station::plan::Plan;
 use halfrow_station::store::{Plant, Wanted};
 
 use super::{any, job, settings, shared, states};
-use crate::common::{Did, PLAN, folder, program};
+use crate::common::{Did, PLAN, did_in, folder, instead};
 use crate::plant::server::Server;
 
 /// A plan that says this of units that passed.
@@ -24,11 +23,8 @@ fn worked(server: &Server, (folder, name): (&Path, &str), plans: &[&Plan]) -> Di
     for (name, plan) in names.iter().zip(plans) {
         fs::write(folder.join(name), &plan.text).unwrap();
     }
-    let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text.replace("\"plan.toml\"", &format!("\"{}\"", names.join("\", \"")))).unwrap();
-    let did = Did::from(
-        Command::new(program()).args(["work", "--once", "--settings"]).arg(&path).output().unwrap(),
-    );
+    instead(path, "\"plan.toml\"", &format!("\"{}\"", names.join("\", \"")));
+    let did = did_in(folder, &["work", "--once"]);
     assert_eq!(did.code, Some(0), "{did:?}");
     did
 }

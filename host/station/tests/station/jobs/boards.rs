@@ -1,7 +1,7 @@
 //! Boards that are waited for, held and lost.
 
 use std::io::{BufRead as _, BufReader, Lines};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::thread;
 
 use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{any, board, job, plan, run_out, settings, shared, with_a_job, worker};
 use crate::clocks::Clocks;
-use crate::common::{engel, now_ms, program, reason, until};
+use crate::common::{command, did_in, engel, now_ms, program, reason, until};
 use crate::plant::server::Server;
 
 fn waiter(name: &str) -> Waiter {
@@ -200,14 +200,10 @@ fn a_unit_is_shared_under_one_name() {
     }
     assert!(plant.share(&again, "engel").unwrap(), "the other one has no number any more");
     let folder = tempfile::tempdir().unwrap();
-    let mut command = Command::new(program());
-    command.args(["board", "share", "shelf-3", "--kind", "mock", "--board", "mock", "--product", "CAM-T"]);
-    command.args(["--serial", "CAT00000", "--operator", "engel", "--settings"]).arg(settings(
-        &server,
-        folder.path(),
-        "12",
-    ));
-    let did: crate::common::Did = command.output().unwrap().into();
+    settings(&server, folder.path(), "12");
+    let share = ["board", "share", "shelf-3", "--kind", "mock", "--board", "mock", "--product", "CAM-T"];
+    let unit = ["--serial", "CAT00000", "--operator", "engel"];
+    let did = did_in(folder.path(), &[&share[..], &unit].concat());
     assert_eq!(did.code, Some(2));
     assert!(did.complained.contains("CAT00000 is shared as the board shelf-9 already"), "{did:?}");
 }

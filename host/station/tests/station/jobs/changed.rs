@@ -2,14 +2,14 @@
 
 use std::fs::{self, File};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use halfrow_station::settings::Settings;
 use halfrow_station::store::Plant;
 
 use super::disk::Worker;
 use super::{any, job, settings, shared};
-use crate::common::{PLAN, folder, program, until};
+use crate::common::{PLAN, command, folder, instead, until};
 use crate::plant::server::Server;
 
 /// Settings of a worker with a plan that names a picture, and one that names none.
@@ -18,8 +18,7 @@ fn with_two_plans(server: &Server, folder: &Path) -> Settings {
     picture(folder, 7);
     fs::write(folder.join("plan.toml"), PLAN.replace("builtin:noise", "a.pgm")).unwrap();
     fs::write(folder.join("other.toml"), PLAN.replace("name = \"quick\"", "name = \"other\"")).unwrap();
-    let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text.replace("\"plan.toml\"", "\"plan.toml\", \"other.toml\"")).unwrap();
+    instead(&path, "\"plan.toml\"", "\"plan.toml\", \"other.toml\"");
     Settings::load_without_lanes(&path).unwrap()
 }
 
@@ -29,9 +28,8 @@ fn picture(folder: &Path, level: u8) {
 
 /// A worker in `folder`, whose complaints are in its file `said`.
 fn work(folder: &Path) -> Worker {
-    let mut command = Command::new(program());
-    command.arg("work").arg("--settings").arg(folder.join("station.toml")).stdout(Stdio::null());
-    Worker(command.stderr(File::create(folder.join("said")).unwrap()).spawn().unwrap())
+    let said = File::create(folder.join("said")).unwrap();
+    Worker(command(folder, &["work"]).stdout(Stdio::null()).stderr(said).spawn().unwrap())
 }
 
 /// Waits until the job with this id is like this.

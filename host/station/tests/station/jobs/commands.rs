@@ -1,13 +1,12 @@
 //! Jobs and shared boards by the commands of a station's program, and a station that takes no jobs.
 
 use std::fs::{self, File};
-use std::process::Command;
 
 use serde_json::Value;
 
 use super::{settings, shared};
 use crate::clocks::Clocks;
-use crate::common::{Did, program};
+use crate::common::{Did, command, did_in, program};
 use crate::plant::server::Server;
 
 /// Runs the commands of an engineer at a plant.
@@ -25,7 +24,7 @@ impl Engineer {
     }
 
     fn did(&self, arguments: &[&str]) -> Did {
-        self.did_by(Command::new(program()), arguments)
+        did_in(self.folder.path(), arguments)
     }
 
     /// The same by this call of the program.
@@ -119,10 +118,8 @@ fn whoever_adds_a_job_that_no_board_could_do_or_whose_id_is_not_printed_is_told(
         let did = engineer.did(&add);
         assert_eq!((did.code, did.complained.contains(told)), (Some(0), is_told), "{did:?}");
     }
-    let mut command = Command::new(program());
-    command.args(add).arg("--settings").arg(engineer.folder.path().join("station.toml"));
     let full = File::options().write(true).open("/dev/full").unwrap();
-    let did = Did::from(command.stdout(full).output().unwrap());
+    let did = Did::from(command(engineer.folder.path(), &add).stdout(full).output().unwrap());
     assert!(did.code == Some(3) && did.complained.contains("the jobs were added all the same"), "{did:?}");
     assert_eq!(engineer.server.rows("SELECT count(*) FROM job"), [["4"]]);
 }

@@ -9,7 +9,7 @@ use nix::unistd::Pid;
 use tempfile::TempDir;
 
 use super::{any, at_work, job, judged, plan, settings, shared, with_a_job};
-use crate::common::{Did, folder, program, query, until_found};
+use crate::common::{Did, command, folder, program, query, until_found};
 use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
 
@@ -28,8 +28,7 @@ impl Station {
     }
 
     fn work(&self, more: &[&str]) -> Command {
-        let mut command = Command::new(program());
-        command.arg("work").args(more).arg("--settings").arg(self.folder.path().join("station.toml"));
+        let mut command = command(self.folder.path(), &[&["work"], more].concat());
         command.stdout(Stdio::null());
         command
     }

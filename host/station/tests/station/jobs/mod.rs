@@ -109,14 +109,8 @@ fn settings(server: &Server, folder: &Path, name: &str) -> PathBuf {
 
 /// The same with the plant at `url`.
 pub(crate) fn settings_of(url: &str, folder: &Path, name: &str) -> PathBuf {
-    std::fs::write(folder.join("plan.toml"), PLAN).unwrap();
-    let plant = crate::common::plant_settings(url);
-    let text = format!(
-        "schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n{plant}[work]\nplans = [\"plan.toml\"]\n"
-    );
-    let path = folder.join("station.toml");
-    std::fs::write(&path, text).unwrap();
-    path
+    let more = format!("{}[work]\nplans = [\"plan.toml\"]\n", crate::common::plant_settings(url));
+    crate::common::settings(folder, name, "data", &more)
 }
 
 /// The station of these settings, whose lanes run `program`. Nothing that it stores is sent on.

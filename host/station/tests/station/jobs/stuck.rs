@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 use super::disk::Worker;
 use super::{any, at_work, job, judged, plan, settings, settings_of, shared, states, with_a_job};
-use crate::common::{Did, engel, free_port, program, reason, until_found};
+use crate::common::{Did, command, did_in, engel, free_port, instead, program, reason, until_found};
 use crate::history::made::Made;
 use crate::lanes::floor::HANG;
 use crate::lanes::stuck::Stuck;
@@ -24,8 +24,7 @@ use crate::runs::outlived::Outlived;
 /// The settings, in `folder`, of a station whose lanes stay silent and cannot be killed, and their program.
 fn with_stuck_lanes(server: &Server, folder: &Path) -> (Settings, Stuck) {
     let path = settings(server, folder, "12");
-    let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replace("[station]", "[station]\nsilence = 5")).unwrap();
+    instead(&path, "[station]", "[station]\nsilence = 5");
     (Settings::load_without_lanes(&path).unwrap(), Stuck::in_folder(folder))
 }
 
@@ -78,8 +77,7 @@ fn outlived_without_plant(port: u16, folder: &Path) -> (PathBuf, Outlived, TempD
     let outlived = Outlived::of(&mut made, "shelf-0");
     let data = made.closed();
     let path = settings_of(&format!("postgres://postgres@127.0.0.1:{port}/plant"), folder, "12");
-    let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replace("\"data\"", &format!("{:?}", data.path()))).unwrap();
+    instead(&path, "\"data\"", &format!("{:?}", data.path()));
     (path, outlived, data)
 }
 
@@ -99,10 +97,8 @@ fn a_call_for_what_there_is_ends_when_the_plant_cannot_be_told_that_a_board_is_o
 fn a_station_ends_when_it_is_told_to_though_the_plant_cannot_be_told_that_a_board_is_out() {
     let plant = TcpListener::bind("127.0.0.1:0").unwrap();
     let folder = crate::common::folder();
-    let (path, _outlived, _data) = outlived_without_plant(plant.local_addr().unwrap().port(), folder.path());
-    let mut call = Command::new(program());
-    let mut worker =
-        Worker(call.args(["work", "--settings"]).arg(path).stderr(Stdio::null()).spawn().unwrap());
+    let _outlived = outlived_without_plant(plant.local_addr().unwrap().port(), folder.path());
+    let mut worker = Worker(command(folder.path(), &["work"]).stderr(Stdio::null()).spawn().unwrap());
     let _asked = plant.accept().unwrap();
     kill(Pid::from_raw(worker.0.id() as i32), Signal::SIGTERM).unwrap();
     let ended = until_found("its end", || worker.0.try_wait().unwrap().ok_or("at work"));
@@ -117,10 +113,8 @@ fn a_board_whose_lane_outlived_its_station_is_taken_out_before_another_job_is_ta
     let _outlived = Outlived::of(&mut made, "shelf-0");
     let (data, folder) = (made.closed(), crate::common::folder());
     let path = settings(&server, folder.path(), "12");
-    let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replace("\"data\"", &format!("{:?}", data.path()))).unwrap();
-    let did: Did =
-        Command::new(program()).args(["work", "--once", "--settings"]).arg(&path).output().unwrap().into();
+    instead(path, "\"data\"", &format!("{:?}", data.path()));
+    let did = did_in(folder.path(), &["work", "--once"]);
     let out = server.rows("SELECT out FROM board").concat();
     assert!(out.concat().contains("a process of station 12 may still have it"), "{out:?} {did:?}");
     assert_eq!(states(&server), [["waiting", "0"]]);

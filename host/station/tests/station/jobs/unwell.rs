@@ -1,12 +1,11 @@
 //! Shared boards that cannot be judged where they are said to be, beside good ones of their kind.
 
 use std::path::Path;
-use std::process::Command;
 
 use halfrow_station::store::{Claim, Plant, SharedBoard, Wanted};
 
 use super::{any, board, job, plan, settings, shared, states, worker};
-use crate::common::{Did, folder, program};
+use crate::common::{Did, did_in, folder};
 use crate::plant::server::Server;
 
 /// A plant with `shelf-0`, at an address that refuses, and `shelf-1`.
@@ -19,9 +18,8 @@ fn with_one_unreachable() -> (Server, Plant) {
 
 /// Has the station in `folder` take all jobs that it can judge.
 fn worked(server: &Server, folder: &Path) -> Did {
-    let path = settings(server, folder, "12");
-    let did =
-        Did::from(Command::new(program()).args(["work", "--once", "--settings"]).arg(path).output().unwrap());
+    settings(server, folder, "12");
+    let did = did_in(folder, &["work", "--once"]);
     assert_eq!(did.code, Some(0), "{did:?}");
     did
 }

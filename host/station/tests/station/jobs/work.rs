@@ -15,15 +15,14 @@ use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::{any, job, plan, run_out, settings, shared};
-use crate::common::{Did, HANG, engel, program, query, reason, until};
+use crate::common::{Did, HANG, command, did_in, engel, program, query, reason, until};
 use crate::plant::clocks::FAST;
 use crate::plant::server::Server;
 
 fn work(server: &Server, name: &str) -> (tempfile::TempDir, Command) {
     let folder = crate::common::folder();
-    let path = settings(server, folder.path(), name);
-    let mut command = Command::new(program());
-    command.args(["work", "--once", "--json", "--settings"]).arg(path);
+    settings(server, folder.path(), name);
+    let mut command = command(folder.path(), &["work", "--once", "--json"]);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     (folder, command)
 }
@@ -98,22 +97,14 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     assert!(did.said.contains("\"verdict\":\"PASS\""), "{did:?}");
     assert_eq!(server.rows("SELECT state, fence FROM job"), [["done", "2"]]);
     // The run that the first one had begun is closed when it starts again, and does not count for the job.
-    let again = Command::new(program())
-        .args(["work", "--once", "--settings"])
-        .arg(folder.path().join("station.toml"))
-        .output()
-        .unwrap();
-    assert!(again.status.success(), "{again:?}");
+    let again = did_in(folder.path(), &["work", "--once"]);
+    assert_eq!(again.code, Some(0), "{again:?}");
     let claims = "SELECT text::json #>> '{run,job,fence}' FROM record, run WHERE sha256 = record_sha256 AND cause = 'crash'";
     let claims = server.rows(claims);
     assert_eq!(claims, [["1"]]);
     // A station without a lane also tells what it has not sent.
-    let unsent = Command::new(program())
-        .args(["outbox", "list", "--settings"])
-        .arg(folder.path().join("station.toml"))
-        .output()
-        .unwrap();
-    assert!(unsent.status.success(), "{unsent:?}");
+    let unsent = did_in(folder.path(), &["outbox", "list"]);
+    assert_eq!(unsent.code, Some(0), "{unsent:?}");
     assert!(fs::exists(folder.path().join("data/station.db")).unwrap());
     assert_eq!(server.rows("SELECT count(*) FROM run WHERE verdict = 'PASS'"), [["1"]]);
 }
@@ -140,8 +131,7 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
     let path = settings(&server, folder.path(), "12");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text.clone() + "at_once = 2\n").unwrap();
-    let mut command = Command::new(program());
-    command.args(["work", "--json", "--any-disk", "--settings"]).arg(&path);
+    let mut command = command(folder.path(), &["work", "--json", "--any-disk"]);
     let mut worker = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let open = || query(&folder.path().join("data"), "SELECT lane FROM run WHERE state = 'open'");
     let both = "SELECT 1 FROM job WHERE state = 'claimed' HAVING count(*) = 2";

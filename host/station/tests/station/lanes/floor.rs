@@ -41,9 +41,7 @@ impl Station {
 
     /// With lanes that may be silent only for so many seconds.
     pub(crate) fn with_silence(self, seconds: u32) -> Self {
-        let path = self.path("station.toml");
-        let text = fs::read_to_string(&path).unwrap();
-        fs::write(&path, text.replace("silence = 60", &format!("silence = {seconds}"))).unwrap();
+        common::instead(self.path("station.toml"), "silence = 60", &format!("silence = {seconds}"));
         self
     }
 

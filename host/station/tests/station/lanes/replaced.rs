@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::ends::{connected, lane_of};
 use super::floor::{Running, SERIALS, Station};
-use crate::common::{Did, program, script, silent_board};
+use crate::common::{Did, instead, program, script, silent_board};
 
 /// Starts the station by a program file of its own; returns that file as well.
 fn started(station: &Station) -> (Running, std::path::PathBuf) {
@@ -85,8 +85,7 @@ fn a_file_of_the_plan_that_becomes_another_one_at_work_judges_no_board() {
         fs::write(station.path("a.pgm"), bytes).unwrap();
     };
     picture(7);
-    let plan = fs::read_to_string(station.path("plan.toml")).unwrap();
-    fs::write(station.path("plan.toml"), plan.replace("builtin:noise", "a.pgm")).unwrap();
+    instead(station.path("plan.toml"), "builtin:noise", "a.pgm");
     let mut running = station.start();
     running.state("1", "READY");
     picture(9);

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 
 use super::http::{Request, Response, escaped};
 pub(crate) use crate::common::SERIALS;
-use crate::common::{self, guarded_plan, program, until_found};
+use crate::common::{self, guarded_plan, instead, program, until_found};
 
 /// The name under which browsers reach a station that others can reach.
 pub(crate) const PUBLIC: &str = "station12.example";
@@ -61,9 +61,7 @@ impl Station {
 
     /// The station after a replacement in one of its files.
     pub(crate) fn where_instead(self, name: &str, was: &str, is: &str) -> Self {
-        let text = fs::read_to_string(self.path(name)).unwrap();
-        assert!(text.contains(was), "{text}");
-        fs::write(self.path(name), text.replace(was, is)).unwrap();
+        instead(self.path(name), was, is);
         self
     }
 

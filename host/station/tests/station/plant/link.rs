@@ -10,7 +10,7 @@ use halfrow_station::trust::TrustError;
 use tempfile::TempDir;
 
 use super::server::Server;
-use crate::common::{PLAN, program, query};
+use crate::common::{LANE, program, query};
 
 /// A password that occurs nowhere else.
 const PASSWORD: &str = "correct-horse-battery-5e1f";
@@ -98,12 +98,9 @@ fn guarded() -> Server {
 /// A station's folder, with these additional lines under `[plant]`.
 fn station(server: &Server, more: &str) -> TempDir {
     let folder = crate::common::folder();
-    fs::write(folder.path().join("plan.toml"), PLAN).unwrap();
     let url = server.url().replace("postgres@", "halfrow@");
-    let plant = format!("{}{more}\n", crate::common::plant_settings(&url));
-    let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
-    let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{plant}{lane}");
-    fs::write(folder.path().join("station.toml"), text).unwrap();
+    let plant = crate::common::plant_settings(&url);
+    crate::common::settings(folder.path(), "12", "data", &format!("{plant}{more}\n{LANE}"));
     folder
 }
 

@@ -8,7 +8,7 @@ use halfrow_station::settings::Settings;
 use tempfile::TempDir;
 
 use super::server::Server;
-use crate::common::{Did, PLAN, plant_settings, program};
+use crate::common::{Did, PLAN, instead, plant_settings, program};
 
 pub(super) const IS_NEW: &str =
     "is new; a station at work goes on with the plan that it has until it is started again";
@@ -110,14 +110,9 @@ impl Published {
 #[test]
 fn a_name_that_a_terminal_would_obey_is_spelt_out() {
     let made = Published::new();
-    let instead = |name: &str, was: &str, is: &str| {
-        let text = fs::read_to_string(made.path(name)).unwrap();
-        assert!(text.contains(was), "{text}");
-        fs::write(made.path(name), text.replace(was, is)).unwrap();
-    };
-    instead("plan.toml", "\"quick\"", "\"q\\u001b[8m\\nPASS\"");
-    instead("plan.toml", "version = \"1\"", "version = \"1\\u0007\"");
-    instead("station.toml", "CAM-T/quick", "CAM-T/q\\u001b[8m\\nPASS");
+    instead(made.path("plan.toml"), "\"quick\"", "\"q\\u001b[8m\\nPASS\"");
+    instead(made.path("plan.toml"), "version = \"1\"", "version = \"1\\u0007\"");
+    instead(made.path("station.toml"), "CAM-T/quick", "CAM-T/q\\u001b[8m\\nPASS");
     let told = "CAM-T/q\\u{1b}[8m\\nPASS 1\\u{7}";
     assert_eq!(made.publish("engel.key").said, format!("{told} holds, as number 1\n"));
     assert_eq!(made.fetch().said, format!("{told}, number 1, {IS_NEW}\n"));
@@ -364,8 +359,7 @@ fn a_plan_whose_product_has_a_slash_is_not_published() {
         assert_eq!(did.code, Some(code), "{did:?}");
         assert_eq!(did.complained.contains("a product without a slash"), code == 2, "{did:?}");
     }
-    let settings = fs::read_to_string(made.path("station.toml")).unwrap();
-    fs::write(made.path("station.toml"), settings.replace("CAM-T/quick", "CAM-T/quick/final")).unwrap();
+    instead(made.path("station.toml"), "CAM-T/quick", "CAM-T/quick/final");
     assert_eq!(made.fetch().said, format!("CAM-T/quick/final 1, number 1, {IS_NEW}\n"));
 }
 
@@ -373,8 +367,7 @@ fn a_plan_whose_product_has_a_slash_is_not_published() {
 fn what_is_no_plan_of_its_own_folder_or_no_key_is_refused() {
     let made = Published::new();
     fs::write(made.path("../outside.pgm"), picture(9)).unwrap();
-    let text = fs::read_to_string(made.path("plan.toml")).unwrap();
-    fs::write(made.path("plan.toml"), text.replace("frames/a.pgm", "../outside.pgm")).unwrap();
+    instead(made.path("plan.toml"), "frames/a.pgm", "../outside.pgm");
     let outside = made.publish("engel.key");
     assert!(
         outside.code == Some(2) && outside.complained.contains("lies outside of its folder"),

@@ -6,7 +6,7 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
 
 use super::plans::Published;
-use crate::common::{Did, program, unmasked};
+use crate::common::{Did, instead, program, unmasked};
 
 #[test]
 fn a_station_starts_with_what_it_has_when_the_plant_is_away() {
@@ -47,9 +47,8 @@ fn a_station_starts_with_what_it_has_when_the_plant_does_not_answer() {
     made.publish("engel.key");
     made.fetch();
     let mute = TcpListener::bind("127.0.0.1:0").unwrap();
-    let settings = fs::read_to_string(made.path("station.toml")).unwrap();
     let url = format!("postgres://halfrow@{}/plant", mute.local_addr().unwrap());
-    fs::write(made.path("station.toml"), settings.replace(&made.server.url(), &url)).unwrap();
+    instead(made.path("station.toml"), &made.server.url(), &url);
     let started = made.did(&["lanes", "--any-disk"]);
     assert!(
         started.code == Some(0) && started.complained.contains("the plans stay as they are"),

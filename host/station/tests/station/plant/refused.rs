@@ -1,8 +1,6 @@
 //! What a plant refuses, and what is refused as a plant.
 
-use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use halfrow_station::outbox::{Sink as _, Undelivered};
 use halfrow_station::store::{Plant, PlantError, StoreError};
@@ -11,20 +9,14 @@ use super::cut::due;
 use super::sent::{send, sink};
 use super::server::Server;
 use super::tables::is_as;
-use crate::common::{Did, NO_AUDIT, PLAN, program, query};
+use crate::common::{Did, LANE, NO_AUDIT, did_in, plant_settings, query, settings};
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
 
 /// Runs a command of the station in this folder, with settings that name the plant.
 pub(super) fn did(folder: &Path, server: &Server, arguments: &[&str]) -> Did {
-    fs::write(folder.join("plan.toml"), PLAN).unwrap();
-    let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
-    let plant = crate::common::plant_settings(&server.url());
-    let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \".\"\n{plant}{lane}");
-    fs::write(folder.join("station.toml"), text).unwrap();
-    let mut command = Command::new(program());
-    command.args(arguments).arg("--settings").arg(folder.join("station.toml"));
-    command.output().unwrap().into()
+    settings(folder, "12", ".", &(plant_settings(&server.url()) + LANE));
+    did_in(folder, arguments)
 }
 
 #[test]

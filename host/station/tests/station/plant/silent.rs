@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::{Read as _, Write as _};
 use std::net::{Shutdown, TcpListener, TcpStream};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
@@ -17,7 +17,7 @@ use nix::unistd::Pid;
 
 use super::sent::sink;
 use super::server::Server;
-use crate::common::{folder, now_ms, program, until, until_found};
+use crate::common::{command, folder, now_ms, program, until, until_found};
 use crate::history::made::{End, Made, Run};
 use crate::jobs::disk::Worker;
 use crate::jobs::{settings_of, shared};
@@ -165,9 +165,7 @@ fn the_hands_of_a_station_do_not_wait_for_each_other_s_answers() {
     let folder = folder();
     let path = settings_of(&way.url(), folder.path(), "12");
     fs::write(&path, fs::read_to_string(&path).unwrap() + &format!("at_once = {HANDS}\n")).unwrap();
-    let mut call = Command::new(program());
-    let mut worker =
-        Worker(call.args(["work", "--settings"]).arg(path).stderr(Stdio::null()).spawn().unwrap());
+    let mut worker = Worker(command(folder.path(), &["work"]).stderr(Stdio::null()).spawn().unwrap());
     // Before that, one connection asks until the plant knows the station.
     until("its hands", || hands(worker.0.id()) == HANDS - 1);
     way.is_silent(true);

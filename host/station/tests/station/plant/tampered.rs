@@ -10,7 +10,7 @@ use halfrow_station::store::Plant;
 use serde_json::{Value, json};
 
 use super::plans::{IS_NEW, Published};
-use crate::common::PLAN;
+use crate::common::{PLAN, instead};
 
 /// A second step, to follow the first.
 const SECOND: &str = "\n[[step]]\nkind = \"verify\"\nname = \"second\"\nframes = [\"frames/a.pgm\"]\n";
@@ -112,8 +112,7 @@ fn a_plan_with_a_file_that_it_does_not_name_is_refused_before_anything_is_kept()
 fn a_plan_whose_files_have_control_characters_in_their_names_is_not_published() {
     let made = Published::new();
     fs::write(made.path("frames/a\nb.pgm"), fs::read(made.path("frames/a.pgm")).unwrap()).unwrap();
-    let text = fs::read_to_string(made.path("plan.toml")).unwrap();
-    fs::write(made.path("plan.toml"), text.replace("frames/a.pgm", "frames/a\\nb.pgm")).unwrap();
+    instead(made.path("plan.toml"), "frames/a.pgm", "frames/a\\nb.pgm");
     let refused = made.publish("engel.key");
     assert!(refused.code == Some(2) && refused.complained.contains("control characters"), "{refused:?}");
     assert_eq!(made.server.rows("SELECT count(*) FROM publication"), [["0"]]);

@@ -5,17 +5,15 @@ use std::fs;
 use halfrow_station::store::{Deed, Folder, Store};
 
 use super::server::Server;
-use crate::common::{plant_settings, until, until_found};
+use crate::common::{instead, plant_settings, until, until_found};
 use crate::lanes::floor::{SERIALS, Station, plan};
 
 /// A station of this name, with `more` under `[plant]` in its settings.
 pub(crate) fn station(server: &Server, name: &str, more: &str) -> Station {
     let station = Station::with(&["mock"], "");
     let path = station.path("station.toml");
-    let text = fs::read_to_string(&path).unwrap();
-    let plant = format!("{}{more}\n[[lane]]", plant_settings(&server.url()));
-    let text = text.replacen("[[lane]]", &plant, 1).replace("name = \"12\"", &format!("name = \"{name}\""));
-    fs::write(path, text).unwrap();
+    instead(&path, "name = \"12\"", &format!("name = \"{name}\""));
+    instead(path, "[[lane]]", &format!("{}{more}\n[[lane]]", plant_settings(&server.url())));
     station
 }
 
@@ -95,10 +93,8 @@ fn nothing_is_judged_beside_unsent_results_on_a_full_disk() {
     let mut server = Server::prepared();
     server.kill();
     let station = station(&server, "12", "");
-    let path = station.path("station.toml");
     // Any disk with the program on it is that full.
-    let text = fs::read_to_string(&path).unwrap().replace("most_filled = 100", "most_filled = 1");
-    fs::write(path, text).unwrap();
+    instead(station.path("station.toml"), "most_filled = 100", "most_filled = 1");
     let mut running = station.start();
     running.scan(SERIALS[0]);
     running.state("1", "PASS");

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use super::bench::{Did, PLAN, Station, program};
 use super::ends::lane_of;
-use crate::common::silent_board;
+use crate::common::{instead, silent_board};
 use crate::pages::station as pages;
 
 fn with(station: &Station, more: &[&str]) -> Did {
@@ -86,8 +86,7 @@ fn whatever_keeps_results_refuses_a_folder_that_is_memory() {
     let data = memory.path().join("data");
     let station = pages::Station::private(1);
     let settings = station.path("station.toml");
-    let text = fs::read_to_string(&settings).unwrap();
-    fs::write(&settings, text.replace("\"data\"", &format!("{data:?}"))).unwrap();
+    instead(&settings, "\"data\"", &format!("{data:?}"));
     let demo = memory.path().join("demo");
     let calls =
         [("lanes", "--settings", &settings), ("serve", "--settings", &settings), ("demo", "--folder", &demo)];

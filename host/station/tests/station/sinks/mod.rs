@@ -8,7 +8,6 @@ mod post;
 mod since;
 mod told;
 
-use std::fs;
 use std::path::Path;
 use std::process::Command;
 
@@ -17,7 +16,7 @@ use halfrow_station::said::Saying;
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{Deed, Folder, Parcel, SharedStore, Snapshot, Store, Tried};
 
-use crate::common::{Did, PLAN, now_ms, program};
+use crate::common::{self, Did, LANE, now_ms};
 
 /// Runs a command of the station in this folder, with this `[[sink]]` in its settings.
 fn did(folder: &Path, sink: &str, arguments: &[&str]) -> Did {
@@ -27,17 +26,12 @@ fn did(folder: &Path, sink: &str, arguments: &[&str]) -> Did {
 /// The same command, not yet started.
 fn command(folder: &Path, sink: &str, arguments: &[&str]) -> Command {
     settings(folder, sink);
-    let mut command = Command::new(program());
-    command.args(arguments).arg("--settings").arg(folder.join("station.toml"));
-    command
+    common::command(folder, arguments)
 }
 
 /// Writes the station's settings, with this sink.
 fn settings(folder: &Path, sink: &str) {
-    fs::write(folder.join("plan.toml"), PLAN).unwrap();
-    let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
-    let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \".\"\n{sink}\n{lane}");
-    fs::write(folder.join("station.toml"), text).unwrap();
+    common::settings(folder, "12", ".", &format!("{sink}\n{LANE}"));
 }
 
 /// Sends everything that is not yet sent.

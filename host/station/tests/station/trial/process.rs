@@ -13,7 +13,7 @@ use tempfile::TempDir;
 
 use super::Trial;
 use super::network::Network;
-use crate::common::{self, PLAN, program};
+use crate::common::{self, program};
 use crate::history::generated::Draw;
 
 /// How long each step of ending a station may take, over a cable that was just plugged in.
@@ -56,10 +56,8 @@ pub(super) fn work(trial: &Trial, number: u32, network: Option<Network>) -> Temp
 }
 
 fn settings(folder: &Path, name: &str, plant: &str, at_once: u32) {
-    fs::write(folder.join("plan.toml"), PLAN).unwrap();
-    let station = format!("schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n");
-    let text = format!("{station}{plant}[work]\nplans = [\"plan.toml\"]\nat_once = {at_once}\n");
-    fs::write(folder.join("station.toml"), text).unwrap();
+    let more = format!("{plant}[work]\nplans = [\"plan.toml\"]\nat_once = {at_once}\n");
+    common::settings(folder, name, "data", &more);
 }
 
 struct Station<'a> {
