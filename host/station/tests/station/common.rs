@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::hash::{BuildHasher as _, RandomState};
 use std::iter;
 use std::net::TcpListener;
+use std::ops::{Deref, DerefMut};
 use std::os::unix::fs::FileTypeExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output};
@@ -14,6 +15,8 @@ use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
 use halfrow_station::store::{By, Reason};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use tempfile::TempDir;
 
 /// A plan whose runs take a moment; `scripts` and `packages` read it, too.
@@ -115,10 +118,10 @@ pub(crate) fn free_port() -> u16 {
 }
 
 /// A server that `begin` starts at a port of 127.0.0.1, as soon as it listens, and the port. One that ends did not get its port.
-pub(crate) fn listening(name: &str, mut begin: impl FnMut(u16) -> Child) -> (Child, u16) {
+pub(crate) fn listening(name: &str, mut begin: impl FnMut(u16) -> Child) -> (Killed, u16) {
     for _ in 0..PORTS_TRIED {
         let port = free_port();
-        let mut server = begin(port);
+        let mut server = Killed(begin(port));
         let mut ended = None;
         until(&format!("{name} to listen at port {port}"), || {
             ended = server.try_wait().unwrap();
@@ -161,6 +164,38 @@ pub(crate) struct Over<'a>(pub(crate) &'a AtomicBool);
 impl Drop for Over<'_> {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// A process that is killed when it is dropped.
+pub(crate) struct Killed(pub(crate) Child);
+
+impl Killed {
+    /// Ends it as a service is ended.
+    pub(crate) fn end(mut self) {
+        kill(Pid::from_raw(self.id() as i32), Signal::SIGTERM).unwrap();
+        assert_eq!(self.wait().unwrap().code(), Some(143));
+    }
+}
+
+impl Deref for Killed {
+    type Target = Child;
+
+    fn deref(&self) -> &Child {
+        &self.0
+    }
+}
+
+impl DerefMut for Killed {
+    fn deref_mut(&mut self) -> &mut Child {
+        &mut self.0
+    }
+}
+
+impl Drop for Killed {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 

@@ -1,7 +1,7 @@
 //! Boards that are waited for, held and lost.
 
 use std::io::{BufRead as _, BufReader, Lines};
-use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+use std::process::{ChildStdin, ChildStdout, Stdio};
 use std::thread;
 
 use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{any, board, job, plan, run_out, settings, shared, with_a_job, worker};
 use crate::clocks::Clocks;
-use crate::common::{command, did_in, engel, now_ms, program, reason, until};
+use crate::common::{Killed, command, did_in, engel, now_ms, program, reason, until};
 use crate::plant::server::Server;
 
 fn waiter(name: &str) -> Waiter {
@@ -210,7 +210,7 @@ fn a_unit_is_shared_under_one_name() {
 
 /// `halfrow-station board hold mock`
 struct Hold {
-    process: Child,
+    process: Killed,
     stdin: Option<ChildStdin>,
     told: Lines<BufReader<ChildStdout>>,
     _folder: tempfile::TempDir,
@@ -226,8 +226,8 @@ impl Hold {
         let folder = tempfile::tempdir().unwrap();
         let path = settings(server, folder.path(), name);
         command.args(["board", "hold", "mock", "--settings"]).arg(path);
-        let mut process =
-            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut process = Killed(command.spawn().unwrap());
         let told = BufReader::new(process.stdout.take().unwrap()).lines();
         Self { stdin: process.stdin.take(), told, process, _folder: folder }
     }
@@ -236,13 +236,6 @@ impl Hold {
     fn tells(&mut self, key: &str) -> Value {
         let lines = self.told.by_ref().map(|line| serde_json::from_str::<Value>(&line.unwrap()).unwrap());
         lines.map(|mut told| told[key].take()).find(|told| !told.is_null()).unwrap()
-    }
-}
-
-impl Drop for Hold {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
     }
 }
 

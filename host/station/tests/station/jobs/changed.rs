@@ -7,9 +7,8 @@ use std::process::Stdio;
 use halfrow_station::settings::Settings;
 use halfrow_station::store::Plant;
 
-use super::disk::Worker;
 use super::{any, job, settings, shared};
-use crate::common::{PLAN, command, folder, instead, until};
+use crate::common::{Killed, PLAN, command, folder, instead, until};
 use crate::plant::server::Server;
 
 /// Settings of a worker with a plan that names a picture, and one that names none.
@@ -27,9 +26,9 @@ fn picture(folder: &Path, level: u8) {
 }
 
 /// A worker in `folder`, whose complaints are in its file `said`.
-fn work(folder: &Path) -> Worker {
+fn work(folder: &Path) -> Killed {
     let said = File::create(folder.join("said")).unwrap();
-    Worker(command(folder, &["work"]).stdout(Stdio::null()).stderr(said).spawn().unwrap())
+    Killed(command(folder, &["work"]).stdout(Stdio::null()).stderr(said).spawn().unwrap())
 }
 
 /// Waits until the job with this id is like this.

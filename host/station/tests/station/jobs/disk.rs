@@ -1,15 +1,13 @@
 //! Stations that take jobs while their own disk accepts nothing.
 
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 
 use halfrow::Verdict;
 use halfrow_station::settings::Settings;
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
 use tempfile::TempDir;
 
 use super::{any, at_work, job, judged, plan, settings, shared, with_a_job};
-use crate::common::{Did, command, folder, program, query, until_found};
+use crate::common::{Did, Killed, command, folder, program, query, until_found};
 use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
 
@@ -51,23 +49,6 @@ impl Station {
     }
 }
 
-/// `halfrow-station work`
-pub(crate) struct Worker(pub(crate) Child);
-
-impl Worker {
-    pub(super) fn end(mut self) {
-        kill(Pid::from_raw(self.0.id() as i32), Signal::SIGTERM).unwrap();
-        assert_eq!(self.0.wait().unwrap().code(), Some(143));
-    }
-}
-
-impl Drop for Worker {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
 /// Waits until this query of the plant has rows.
 fn await_rows(server: &Server, text: &str) -> Vec<Vec<String>> {
     until_found(text, || {
@@ -93,7 +74,7 @@ fn a_job_that_a_full_disk_kept_from_beginning_costs_no_attempt() {
     assert!(did.code == Some(3) && did.complained.contains("the board not touched"), "{did:?}");
     assert_eq!(server.rows("SELECT state, attempts, fence FROM job"), [["waiting", "0", "1"]]);
     assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
-    let worker = Worker(station.work(&[]).spawn().unwrap());
+    let worker = Killed(station.work(&[]).spawn().unwrap());
     await_rows(&server, "SELECT 1 FROM job WHERE fence >= 3");
     station.is_well_again();
     let ended = await_rows(&server, "SELECT state, attempts FROM job WHERE state IN ('done', 'dead')");
@@ -105,7 +86,7 @@ fn a_job_that_a_full_disk_kept_from_beginning_costs_no_attempt() {
 #[test]
 fn what_a_worker_could_not_save_is_closed_before_it_takes_another_job() {
     let (server, station) = one_job_and_no_disk_for("UPDATE");
-    let worker = Worker(station.work(&[]).spawn().unwrap());
+    let worker = Killed(station.work(&[]).spawn().unwrap());
     await_rows(&server, "SELECT 1 FROM job WHERE attempts = 1 AND state = 'waiting'");
     station.is_well_again();
     let ended = await_rows(&server, "SELECT state, attempts FROM job WHERE state IN ('done', 'dead')");

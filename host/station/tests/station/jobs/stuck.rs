@@ -12,9 +12,8 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
 
-use super::disk::Worker;
 use super::{any, at_work, job, judged, plan, settings, settings_of, shared, states, with_a_job};
-use crate::common::{Did, command, did_in, engel, free_port, instead, program, reason, until_found};
+use crate::common::{Did, Killed, command, did_in, engel, free_port, instead, program, reason, until_found};
 use crate::history::made::Made;
 use crate::lanes::floor::HANG;
 use crate::lanes::stuck::Stuck;
@@ -98,10 +97,10 @@ fn a_station_ends_when_it_is_told_to_though_the_plant_cannot_be_told_that_a_boar
     let plant = TcpListener::bind("127.0.0.1:0").unwrap();
     let folder = crate::common::folder();
     let _outlived = outlived_without_plant(plant.local_addr().unwrap().port(), folder.path());
-    let mut worker = Worker(command(folder.path(), &["work"]).stderr(Stdio::null()).spawn().unwrap());
+    let mut worker = Killed(command(folder.path(), &["work"]).stderr(Stdio::null()).spawn().unwrap());
     let _asked = plant.accept().unwrap();
-    kill(Pid::from_raw(worker.0.id() as i32), Signal::SIGTERM).unwrap();
-    let ended = until_found("its end", || worker.0.try_wait().unwrap().ok_or("at work"));
+    kill(Pid::from_raw(worker.id() as i32), Signal::SIGTERM).unwrap();
+    let ended = until_found("its end", || worker.try_wait().unwrap().ok_or("at work"));
     assert_eq!(ended.code(), Some(143));
 }
 

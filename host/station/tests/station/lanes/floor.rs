@@ -3,14 +3,14 @@
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::PathBuf;
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{ChildStdin, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common;
+use crate::common::{self, Killed};
 
 pub(crate) use crate::common::{HANG, SERIALS};
 
@@ -64,14 +64,9 @@ impl Station {
 
     /// Starts the station by this call of its program.
     pub(crate) fn started(&self, mut program: Command) -> Running {
-        let mut child = program
-            .args(["lanes", "--operator", "weber", "--settings"])
-            .arg(self.path("station.toml"))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::inherit())
-            .spawn()
-            .unwrap();
+        program.args(["lanes", "--operator", "weber", "--settings"]).arg(self.path("station.toml"));
+        program.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::inherit());
+        let mut child = Killed(program.spawn().unwrap());
         let (sender, news) = mpsc::channel();
         let stdout = BufReader::new(child.stdout.take().unwrap());
         thread::spawn(move || {
@@ -96,7 +91,7 @@ impl Station {
 
 /// The program at work.
 pub(crate) struct Running {
-    child: Child,
+    child: Killed,
     stdin: Option<ChildStdin>,
     news: Receiver<Value>,
     /// All news so far.
@@ -156,13 +151,6 @@ impl Running {
         drop(self.stdin.take());
         let status = self.child.wait().unwrap();
         self.heard.extend(self.news.iter());
-        (status.code(), std::mem::take(&mut self.heard))
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        (status.code(), self.heard)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ use tempfile::TempDir;
 
 use super::figures::{in_state, once, scan};
 use super::rules::example;
-use crate::common::{HANG, listening, plant_settings, until};
+use crate::common::{HANG, Killed, listening, plant_settings, until};
 use crate::pages::http::{Request, escaped};
 use crate::pages::station::{SERIALS, Serving, Station};
 use crate::plant::pages::served;
@@ -19,9 +19,9 @@ use crate::plant::server::Server;
 
 /// Prometheus with the example's configuration. It ends with its test.
 struct Prometheus {
-    _folder: TempDir,
+    _process: Killed,
     port: u16,
-    process: Child,
+    _folder: TempDir,
 }
 
 impl Prometheus {
@@ -53,7 +53,7 @@ impl Prometheus {
                 .unwrap_or_else(|error| panic!("prometheus: {error}; apt-get install prometheus"))
         };
         let (process, port) = listening("prometheus", begin);
-        let prometheus = Self { _folder: folder, port, process };
+        let prometheus = Self { _process: process, port, _folder: folder };
         until("Prometheus to be ready", || prometheus.get("/-/ready").0 == 200);
         prometheus
     }
@@ -86,13 +86,6 @@ impl Prometheus {
     /// The queries that return nothing.
     fn unanswered<'a>(&self, queries: &'a BTreeSet<String>) -> Vec<&'a str> {
         queries.iter().filter(|query| self.series(query) == 0).map(String::as_str).collect()
-    }
-}
-
-impl Drop for Prometheus {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
     }
 }
 

@@ -17,9 +17,8 @@ use nix::unistd::Pid;
 
 use super::sent::sink;
 use super::server::Server;
-use crate::common::{command, folder, now_ms, program, until, until_found};
+use crate::common::{Killed, command, folder, now_ms, program, until, until_found};
 use crate::history::made::{End, Made, Run};
-use crate::jobs::disk::Worker;
 use crate::jobs::{settings_of, shared};
 
 /// A relay in front of a server.
@@ -165,12 +164,12 @@ fn the_hands_of_a_station_do_not_wait_for_each_other_s_answers() {
     let folder = folder();
     let path = settings_of(&way.url(), folder.path(), "12");
     fs::write(&path, fs::read_to_string(&path).unwrap() + &format!("at_once = {HANDS}\n")).unwrap();
-    let mut worker = Worker(command(folder.path(), &["work"]).stderr(Stdio::null()).spawn().unwrap());
+    let mut worker = Killed(command(folder.path(), &["work"]).stderr(Stdio::null()).spawn().unwrap());
     // Before that, one connection asks until the plant knows the station.
-    until("its hands", || hands(worker.0.id()) == HANDS - 1);
+    until("its hands", || hands(worker.id()) == HANDS - 1);
     way.is_silent(true);
     until("a question of each", || way.swallowed.load(Ordering::SeqCst) >= HANDS);
-    kill(Pid::from_raw(worker.0.id() as i32), Signal::SIGTERM).unwrap();
-    let ended = until_found("its end", || worker.0.try_wait().unwrap().ok_or("at work"));
+    kill(Pid::from_raw(worker.id() as i32), Signal::SIGTERM).unwrap();
+    let ended = until_found("its end", || worker.try_wait().unwrap().ok_or("at work"));
     assert_eq!(ended.code(), Some(143));
 }

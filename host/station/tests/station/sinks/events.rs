@@ -5,23 +5,23 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpListener;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::thread;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 use super::send;
-use crate::common::{listening, now_ms, query, reason};
+use crate::common::{Killed, listening, now_ms, query, reason};
 use crate::history::made::{End, Made, Run};
 use crate::plant::link::certificates;
 
 /// A broker that accepts one user, and a subscriber to everything that it gets.
 struct Broker {
-    _folder: TempDir,
+    listener: Killed,
+    broker: Killed,
     port: u16,
-    broker: Child,
-    listener: Child,
+    _folder: TempDir,
 }
 
 const PASSWORD: &str = "rosebud-5e1f";
@@ -70,7 +70,7 @@ impl Broker {
             "1",
         ]);
         let listener = listener.args(["-t", "#", "-F", "%t %p", "-d"]).args(trusted).stdout(Stdio::piped());
-        Self { _folder: folder, port, broker, listener: listener.spawn().unwrap() }
+        Self { listener: Killed(listener.spawn().unwrap()), broker, port, _folder: folder }
     }
 
     /// The next events, each with topic and document.
@@ -94,15 +94,6 @@ impl Broker {
         let url = format!("{scheme}://localhost:{}/factory/halfrow", self.port);
         let login = "user = \"station\"\npassword_file = \"broker.password\"";
         format!("[[sink]]\nname = \"wall\"\nmqtt = \"{url}\"\n{login}\n{more}\n")
-    }
-}
-
-impl Drop for Broker {
-    fn drop(&mut self) {
-        for process in [&mut self.listener, &mut self.broker] {
-            let _ = process.kill();
-            let _ = process.wait();
-        }
     }
 }
 

@@ -6,7 +6,7 @@ use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 
@@ -15,15 +15,15 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{SEND, command, did, send};
-use crate::common::{Did, logged, query, until};
+use crate::common::{Did, Killed, logged, query, until};
 use crate::history::released::history;
 use crate::lanes::floor::{SERIALS, Station};
 use crate::plant::link::certificates;
 
 pub(super) struct Server {
+    _process: Killed,
     folder: TempDir,
     pub(super) port: u16,
-    process: Child,
 }
 
 impl Server {
@@ -36,10 +36,10 @@ impl Server {
         if let Some(place) = certified {
             command.arg(place.join("server.crt")).arg(place.join("server.key"));
         }
-        let mut process = command.spawn().unwrap();
+        let mut process = Killed(command.spawn().unwrap());
         let mut port = String::new();
         BufReader::new(process.stdout.take().unwrap()).read_line(&mut port).unwrap();
-        let server = Self { folder, port: port.trim().parse().unwrap(), process };
+        let server = Self { _process: process, folder, port: port.trim().parse().unwrap() };
         server.answers("200 taken");
         server
     }
@@ -55,13 +55,6 @@ impl Server {
         let text = fs::read_to_string(&path).unwrap_or_default();
         let _ = fs::remove_file(path);
         text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
-    }
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
     }
 }
 

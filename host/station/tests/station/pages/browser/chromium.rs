@@ -1,7 +1,7 @@
 //! Chromium without a window, over the pipes of its DevTools protocol: messages in JSON, each ended by a zero byte.
 
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{ChildStdin, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::HANG;
+use crate::common::{HANG, Killed};
 use crate::pages::station::Serving;
 
 /// How often a condition is checked.
@@ -22,7 +22,7 @@ const START: &str = "exec chromium --headless=new --no-sandbox --disable-gpu --n
 
 /// A browser with one page.
 pub(super) struct Chromium {
-    child: Child,
+    _child: Killed,
     to: ChildStdin,
     from: Receiver<Value>,
     session: Value,
@@ -48,14 +48,9 @@ impl Chromium {
     /// A browser with further arguments, with the page at `address`.
     pub(super) fn with(arguments: &[&str], address: &str) -> Self {
         let profile = tempfile::tempdir().unwrap();
-        let mut child = Command::new("sh")
-            .args(["-c", START])
-            .arg(profile.path())
-            .args(arguments)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut command = Command::new("sh");
+        command.args(["-c", START]).arg(profile.path()).args(arguments);
+        let mut child = Killed(command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap());
         let mut messages = BufReader::new(child.stdout.take().unwrap());
         let (sender, from) = mpsc::channel();
         thread::spawn(move || {
@@ -67,8 +62,15 @@ impl Chromium {
             }
         });
         let to = child.stdin.take().unwrap();
-        let mut browser =
-            Self { child, to, from, session: Value::Null, number: 0, asked: Vec::new(), _profile: profile };
+        let mut browser = Self {
+            _child: child,
+            to,
+            from,
+            session: Value::Null,
+            number: 0,
+            asked: Vec::new(),
+            _profile: profile,
+        };
         let pages = browser.call("Target.getTargets", json!({}));
         let page =
             pages["targetInfos"].as_array().unwrap().iter().find(|target| target["type"] == "page").unwrap();
@@ -173,12 +175,5 @@ impl Chromium {
             }
         }
         self.answer(last);
-    }
-}
-
-impl Drop for Chromium {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }

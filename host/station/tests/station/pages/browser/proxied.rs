@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use serde_json::json;
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::chromium::Chromium;
 use super::live::{NOT_LIVE, WATCH};
-use crate::common::{folder, listening};
+use crate::common::{Killed, folder, listening};
 use crate::pages::station::{PUBLIC, Serving, Station};
 
 /// The most milliseconds until the page is live again, apart from delays of a busy machine.
@@ -29,7 +29,7 @@ fn example() -> String {
 
 /// A proxy in front of a station's pages.
 struct Proxy {
-    nginx: Child,
+    _nginx: Killed,
     port: u16,
     _folder: TempDir,
 }
@@ -44,7 +44,7 @@ impl Proxy {
             nginx.args(["-c", NGINX]).arg(folder.path()).stderr(Stdio::null()).spawn().unwrap()
         };
         let (nginx, port) = listening("nginx", begin);
-        Self { nginx, port, _folder: folder }
+        Self { _nginx: nginx, port, _folder: folder }
     }
 }
 
@@ -69,13 +69,6 @@ fn configuration(folder: &Path, port: u16, station: u16) -> String {
         "daemon off;\nmaster_process off;\npid {};\nevents {{}}\nhttp {{\naccess_log off;\n{places}{server}}}\n",
         of("nginx.pid")
     )
-}
-
-impl Drop for Proxy {
-    fn drop(&mut self) {
-        let _ = self.nginx.kill();
-        let _ = self.nginx.wait();
-    }
 }
 
 fn certificate(folder: &Path) {
