@@ -96,7 +96,7 @@ impl System {
     }
 
     fn judge_by(&self, reconnect: Option<Duration>, candidate: Candidate) -> Report {
-        judged(&self.plan(), reconnect, candidate)
+        judge_reconnecting(&self.plan(), reconnect, candidate)
     }
 
     /// The plan: the built-in frames, up to the first that differs.
@@ -128,10 +128,15 @@ pub fn streamed(plan: Plan) -> Plan {
 /// If the board cannot have what the plan uploads.
 #[must_use]
 pub fn judge_by_plan(plan: &Plan, candidate: Candidate) -> Report {
-    judged(plan, None, candidate)
+    judge_reconnecting(plan, None, candidate)
 }
 
-fn judged(plan: &Plan, reconnect: Option<Duration>, candidate: Candidate) -> Report {
+/// The report on a board by this plan, if it is waited for so long when its link breaks.
+///
+/// # Panics
+/// Like [`judge_by_plan`].
+#[must_use]
+pub fn judge_reconnecting(plan: &Plan, reconnect: Option<Duration>, candidate: Candidate) -> Report {
     // Fixed, so that every run sends the same packets.
     let session_ids = SessionIds { nonce: 0, host: 0, sequence: 0 };
     let provenance = Provenance { session_ids, ..Provenance::default() };

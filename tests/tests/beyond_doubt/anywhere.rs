@@ -4,16 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use halfrow::link::{Candidate, Link, LinkError};
-use halfrow::progress::Silent;
 use halfrow::result::Report;
-use halfrow::run::{Plan, RunOptions, Vary, verify};
+use halfrow::run::{Plan, Vary};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::Request;
 use halfrow_protocol::message::{Bank, Span};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
-use halfrow_tests::system::{System, open, streamed};
+use halfrow_tests::system::{System, judge_reconnecting, open, streamed};
 use halfrow_tests::through::Through;
 
 use crate::conduct::passes;
@@ -38,8 +37,7 @@ fn breaking(behind: u64) -> Box<dyn Link> {
 fn judged(plan: &Plan, behind: u64, again: u64) -> Report {
     let reopen = Box::new(move || Ok(breaking(again)));
     let candidate = Candidate { link: breaking(behind), reopen: Some(reopen), ..open("mock") };
-    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
-    verify(plan, candidate, &options, &Silent).unwrap().report
+    judge_reconnecting(plan, Some(LIMIT), candidate)
 }
 
 #[test]
@@ -79,8 +77,7 @@ fn a_sound_board_that_comes_back_passes_where_the_link_breaks_between_frames() {
         let candidate = Altered::new(&Options::default(), alter).candidate();
         let link = cut_when_told(candidate.link, is_cut);
         let candidate = Candidate { link, reopen: Some(Box::new(|| Ok(open("mock").link))), ..candidate };
-        let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
-        let report = verify(&plan, candidate, &options, &Silent).unwrap().report;
+        let report = judge_reconnecting(&plan, Some(LIMIT), candidate);
         passes(&report);
         assert_eq!(report.link.reconnections.len(), 1, "{which}");
     }

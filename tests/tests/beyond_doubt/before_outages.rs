@@ -13,7 +13,7 @@ use halfrow_protocol::message::{Refusal, RefusalCode};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward};
 use halfrow_tests::patience::LIMIT;
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, judge_reconnecting};
 
 use crate::outages::{board as sound, breakable};
 
@@ -42,9 +42,8 @@ fn breaking(meant: Meant, spoil: Spoil, nth: usize) -> (Candidate, Arc<AtomicUsi
 /// The report on `board`, which comes back as one of `others`, and as a sound one after those.
 fn report(board: Candidate, mut others: Vec<Box<dyn Link>>) -> Report {
     let reopen: Reopener = Box::new(move || Ok(others.pop().unwrap_or_else(|| sound(false))));
-    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
     let candidate = Candidate { reopen: Some(reopen), ..board };
-    verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report
+    judge_reconnecting(&System::TINY.plan(), Some(LIMIT), candidate)
 }
 
 /// The report on such a board, in whose place a sound one comes back. With how many of the replies there were.

@@ -15,7 +15,7 @@ use halfrow_protocol::message::{Capabilities, Records, Welcome};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
-use halfrow_tests::system::{System, open, streamed};
+use halfrow_tests::system::{System, judge_reconnecting, open, streamed};
 use halfrow_tests::through::Through;
 
 use crate::stale_packets::cut_when_told;
@@ -68,8 +68,7 @@ fn unplugged_in_front_of_the_second_look(wrong: Wrong, reconnect: Option<Duratio
     let candidate = breakable(alter, is_cut);
     let back = move || Ok::<_, std::io::Error>(board(wrong == Wrong::Always));
     let candidate = Candidate { reopen: Some(Box::new(move || back().map_err(Into::into))), ..candidate };
-    let options = RunOptions { reconnect, ..RunOptions::default() };
-    verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report
+    judge_reconnecting(&System::TINY.plan(), reconnect, candidate)
 }
 
 #[test]
@@ -116,8 +115,7 @@ fn unplugged_behind_the_fifth_row(
         vec![spoil(&packet)]
     };
     let candidate = Candidate { reopen, ..breakable(alter, is_cut) };
-    let options = RunOptions { reconnect, ..RunOptions::default() };
-    verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report
+    judge_reconnecting(&System::TINY.plan(), reconnect, candidate)
 }
 
 /// Beside its samples.
@@ -156,8 +154,7 @@ fn tables_that_read_back_wrong_over_a_link_that_breaks_are_looked_at_again() {
         };
         let reopen: Option<Reopener> = Some(Box::new(|| Ok(board(false))));
         let candidate = Candidate { reopen, ..breakable(alter, is_cut) };
-        let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
-        let report = verify(&plan, candidate, &options, &Silent).unwrap().report;
+        let report = judge_reconnecting(&plan, Some(LIMIT), candidate);
         (report, answers.load(Ordering::Relaxed))
     };
     let (_, answers) = judged(usize::MAX);
@@ -267,8 +264,7 @@ fn a_board_whose_device_fails_may_come_back_as_one_that_hangs_up() {
         link.exchange(out, back, wait)
     });
     let candidate = Candidate { link, reopen: Some(Box::new(|| Ok(board(false)))), ..candidate };
-    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
-    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    let report = judge_reconnecting(&System::TINY.plan(), Some(LIMIT), candidate);
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert_eq!(report.link.reconnections.len(), 1);
 }
@@ -283,8 +279,7 @@ fn a_board_that_loses_its_power_where_it_must_refuse_is_waited_for() {
     };
     let candidate = Altered::new(&Options::default(), alter).candidate();
     let candidate = Candidate { reopen: Some(Box::new(|| Ok(board(false)))), ..candidate };
-    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
-    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    let report = judge_reconnecting(&System::TINY.plan(), Some(LIMIT), candidate);
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert_eq!(report.link.reconnections.len(), 1);
 }
@@ -372,8 +367,7 @@ fn unplugged_while_choosing(reconnect: Option<Duration>) -> Report {
     let reopen: Reopener = Box::new(|| Ok(board(false)));
     let candidate = Candidate { reopen: Some(reopen), ..breakable(alter, is_cut) };
     let plan = Plan { within: Some(LIMIT), ..System::TINY.plan() };
-    let options = RunOptions { reconnect, ..RunOptions::default() };
-    verify(&plan, candidate, &options, &Silent).unwrap().report
+    judge_reconnecting(&plan, reconnect, candidate)
 }
 
 #[test]

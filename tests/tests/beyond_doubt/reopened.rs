@@ -7,14 +7,12 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use halfrow::link::{Candidate, Link, LinkError, Reopener};
-use halfrow::progress::Silent;
 use halfrow::result::{Finding, Report};
-use halfrow::run::{RunOptions, verify};
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Hello, Request};
 use halfrow_tests::altered::{Passing, Toward};
 use halfrow_tests::patience::LIMIT;
-use halfrow_tests::system::{System, streamed};
+use halfrow_tests::system::{System, judge_reconnecting, streamed};
 
 use crate::conduct::passes;
 use crate::outages::{board, breakable};
@@ -38,9 +36,8 @@ fn breaking_at(kind: Kind, greetings: &Greetings) -> Candidate {
 
 /// The report on the board at `candidate`, which `reopen` opens again within `patience`.
 fn report(candidate: Candidate, reopen: Reopener, patience: Duration) -> Report {
-    let options = RunOptions { reconnect: Some(patience), ..RunOptions::default() };
     let candidate = Candidate { reopen: Some(reopen), ..candidate };
-    verify(&streamed(System::TINY.plan()), candidate, &options, &Silent).unwrap().report
+    judge_reconnecting(&streamed(System::TINY.plan()), Some(patience), candidate)
 }
 
 /// A board may have answered a try whose answer never came. It takes the same nonce for the same session (WIRE.md, 01), and a

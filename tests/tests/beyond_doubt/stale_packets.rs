@@ -15,7 +15,7 @@ use halfrow::verdict::{StoppedBy, Verdict};
 use halfrow_protocol::message::{Refusal, RefusalCode, Status};
 use halfrow_protocol::{Kind, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, judge_reconnecting};
 use halfrow_tests::through::Through;
 
 /// What a link does to packets that delivers request number `which` of a kind once more, before request number `before` of
@@ -297,8 +297,7 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail_that_goes_away_later() {
     let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
     let link = cut_when_told(candidate.link, is_cut);
     let candidate = Candidate { link, reopen: Some(Box::new(move || Ok(sound()))), ..candidate };
-    let options = RunOptions { reconnect: Some(Duration::from_secs(1000)), ..RunOptions::default() };
-    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    let report = judge_reconnecting(&System::TINY.plan(), Some(Duration::from_secs(1000)), candidate);
     assert_eq!(report.link.reconnections.len(), 1);
     let is_known = matches!(report.finding, Finding::RightInAnotherSession { .. });
     assert!(is_known, "{}", report.headline());

@@ -4,16 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use halfrow::link::Candidate;
-use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Finding};
-use halfrow::run::{RunOptions, Vary, verify};
+use halfrow::run::Vary;
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{Bank, ResetLevel, RowOut, RowPlace};
 use halfrow_protocol::{Kind, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
 use halfrow_tests::patience::LIMIT;
-use halfrow_tests::system::{System, failed_check, judge_by_plan, open, streamed};
+use halfrow_tests::system::{System, failed_check, judge_by_plan, judge_reconnecting, open, streamed};
 
 use crate::conduct::{fails, passes};
 use crate::stale_packets::cut_when_told;
@@ -92,8 +91,7 @@ fn what_a_board_did_is_not_forgotten_when_the_link_breaks_behind_it() {
         reopen: Some(Box::new(|| Ok(open("mock").link))),
         ..candidate
     };
-    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
-    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    let report = judge_reconnecting(&System::TINY.plan(), Some(LIMIT), candidate);
     fails(&report, CheckName::Frames, DIFFERS);
 }
 
