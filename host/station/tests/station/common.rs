@@ -167,13 +167,23 @@ impl Drop for Over<'_> {
     }
 }
 
+/// Sends a process a signal.
+pub(crate) fn signal(process: u32, signal: Signal) {
+    kill(Pid::from_raw(process.cast_signed()), signal).unwrap();
+}
+
+/// Whether there is a process of this number.
+pub(crate) fn exists(process: u32) -> bool {
+    kill(Pid::from_raw(process.cast_signed()), None).is_ok()
+}
+
 /// A process that is killed when it is dropped.
 pub(crate) struct Killed(pub(crate) Child);
 
 impl Killed {
     /// Ends it as a service is ended.
     pub(crate) fn end(mut self) {
-        kill(Pid::from_raw(self.id() as i32), Signal::SIGTERM).unwrap();
+        signal(self.id(), Signal::SIGTERM);
         assert_eq!(self.wait().unwrap().code(), Some(143));
     }
 }

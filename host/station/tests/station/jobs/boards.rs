@@ -7,7 +7,7 @@ use std::thread;
 use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
 use serde_json::Value;
 
-use super::{any, board, job, plan, run_out, settings, shared, with_a_job, worker};
+use super::{add, board, run_out, settings, shared, with_a_job, worker};
 use crate::clocks::Clocks;
 use crate::common::{Killed, command, did_in, engel, now_ms, program, reason, until};
 use crate::plant::server::Server;
@@ -161,8 +161,7 @@ fn what_those_in_front_are_to_get_is_left_to_them() {
 #[test]
 fn a_job_is_judged_on_a_board_that_nobody_who_waits_reaches() {
     let (_server, mut plant) = one_for_all_and_one_for_a();
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 2).unwrap();
+    add(&mut plant, 2);
     let [p, b] = waiting([("p", "B"), ("b", "B")]);
     let Turn::Held(held) = plant.wait(&p).unwrap() else { panic!("it is free") };
     assert_eq!(got(&mut plant, &b), Err(0));

@@ -10,7 +10,7 @@ use halfrow_station::store::{
     Claim, Entry, JobState, Kind, Parcel, Plant, Snapshot, Turn, Waiter, Wanted, Worker, jobs,
 };
 
-use super::{any, board, job, plan, run_out, shared, states, with_a_job, worker};
+use super::{add, any, board, job, plan, run_out, shared, states, with_a_job, worker};
 use crate::common::{engel, reason};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 use crate::plant::checked::faults;
@@ -38,8 +38,7 @@ fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
 #[test]
 fn a_job_is_had_by_one_at_a_time_and_so_is_a_board() {
     let (server, mut plant) = shared(4);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 40).unwrap();
+    add(&mut plant, 40);
     let held = Mutex::new((Vec::<String>::new(), Vec::new()));
     thread::scope(|scope| {
         for number in 0..8 {

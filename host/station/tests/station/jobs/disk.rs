@@ -6,7 +6,7 @@ use halfrow::Verdict;
 use halfrow_station::settings::Settings;
 use tempfile::TempDir;
 
-use super::{any, at_work, job, judged, plan, settings, shared, with_a_job};
+use super::{add, at_work, judged, settings, shared, with_a_job};
 use crate::common::{Did, Killed, command, folder, program, query, until_found};
 use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
@@ -61,8 +61,7 @@ fn await_rows(server: &Server, text: &str) -> Vec<Vec<String>> {
 fn one_job_and_no_disk_for(what: &str) -> (Server, Station) {
     let (server, mut plant) = shared(1);
     let station = Station::new(&server);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    add(&mut plant, 1);
     station.refuses(what);
     (server, station)
 }

@@ -63,9 +63,13 @@ pub(crate) fn shared(count: usize) -> (Server, Plant) {
 /// A plant with one board and one job for it; the last member is the job's id.
 fn with_a_job() -> (Server, Plant, String) {
     let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let id = add(&mut plant, 1).remove(0);
     (server, plant, id)
+}
+
+/// Adds so many jobs for any board; returns their ids.
+pub(crate) fn add(plant: &mut Plant, count: u32) -> Vec<String> {
+    plant.add_jobs(&job(&plan(), &any()), count).unwrap()
 }
 
 pub(crate) fn any() -> Wanted {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use halfrow_station::store::Plant;
 
-use super::{any, job, plan, shared, worker};
+use super::{add, shared, worker};
 
 /// How many stations take jobs at the same time, and how many jobs a second they take together.
 const STATIONS: usize = 100;
@@ -35,8 +35,7 @@ fn waits(server: &crate::plant::server::Server, number: usize) -> Vec<Duration> 
 #[ignore = "for scripts/soak: a figure of a machine that does nothing else"]
 fn a_hundred_stations_get_fifty_jobs_a_second() {
     let (server, mut plant) = shared(STATIONS + 10);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 10_000).unwrap();
+    add(&mut plant, 10_000);
     let mut all: Vec<_> = thread::scope(|scope| {
         let server = &server;
         let stations: Vec<_> =

@@ -8,12 +8,13 @@ use std::time::Instant;
 use halfrow::verdict::StoppedBy;
 use halfrow_station::run::Stage;
 use halfrow_station::settings::Settings;
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 use tempfile::TempDir;
 
-use super::{any, at_work, job, judged, plan, settings, settings_of, shared, states, with_a_job};
-use crate::common::{Did, Killed, command, did_in, engel, free_port, instead, program, reason, until_found};
+use super::{add, at_work, judged, settings, settings_of, shared, states, with_a_job};
+use crate::common::{
+    Did, Killed, command, did_in, engel, free_port, instead, program, reason, signal, until_found,
+};
 use crate::history::made::Made;
 use crate::lanes::floor::HANG;
 use crate::lanes::stuck::Stuck;
@@ -30,8 +31,7 @@ fn with_stuck_lanes(server: &Server, folder: &Path) -> (Settings, Stuck) {
 #[test]
 fn a_board_whose_lane_cannot_be_killed_is_taken_out_and_not_given_back() {
     let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 2).unwrap();
+    add(&mut plant, 2);
     let folder = crate::common::folder();
     let (settings, stuck) = with_stuck_lanes(&server, folder.path());
     let work = at_work(&settings, stuck.program.clone());
@@ -99,7 +99,7 @@ fn a_station_ends_when_it_is_told_to_though_the_plant_cannot_be_told_that_a_boar
     let _outlived = outlived_without_plant(plant.local_addr().unwrap().port(), folder.path());
     let mut worker = Killed(command(folder.path(), &["work"]).stderr(Stdio::null()).spawn().unwrap());
     let _asked = plant.accept().unwrap();
-    kill(Pid::from_raw(worker.id() as i32), Signal::SIGTERM).unwrap();
+    signal(worker.id(), Signal::SIGTERM);
     let ended = until_found("its end", || worker.try_wait().unwrap().ok_or("at work"));
     assert_eq!(ended.code(), Some(143));
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use halfrow_station::store::{Claim, Plant, SharedBoard, Wanted};
 
-use super::{any, board, job, plan, settings, shared, states, worker};
+use super::{add, board, job, plan, settings, shared, states, worker};
 use crate::common::{Did, did_in, folder};
 use crate::plant::server::Server;
 
@@ -28,8 +28,8 @@ fn worked(server: &Server, folder: &Path) -> Did {
 #[test]
 fn an_unreachable_board_ends_no_job_that_another_board_of_the_kind_can_do() {
     let (server, mut plant) = with_one_unreachable();
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 6).unwrap();
+    let plan = plan();
+    add(&mut plant, 6);
     plant.add_jobs(&job(&plan, &Wanted::Serial("CAT00000".to_owned())), 1).unwrap();
     worked(&server, folder().path());
     let first = ["done", "2"];
@@ -43,10 +43,9 @@ fn an_unreachable_board_ends_no_job_that_another_board_of_the_kind_can_do() {
 #[test]
 fn a_board_that_ended_in_an_error_is_tried_again_when_no_other_would_do_or_after_ten_minutes() {
     let (server, mut plant) = with_one_unreachable();
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    add(&mut plant, 1);
     worked(&server, folder().path());
-    plant.add_jobs(&job(&plan, &any), 2).unwrap();
+    add(&mut plant, 2);
     let mut claim = || plant.claim(&worker("12")).unwrap();
     let board = |claim: Option<&Claim>| claim.map(|claim| claim.lease.board.clone());
     let first = claim();
@@ -87,8 +86,7 @@ fn a_board_that_cannot_be_judged_as_it_is_shared_costs_no_attempt_and_is_named()
         let (server, mut plant) = shared(1);
         let folder = folder();
         assert!(plant.share(&wrong, "engel").unwrap());
-        let (plan, any) = (plan(), any());
-        plant.add_jobs(&job(&plan, &any), 2).unwrap();
+        add(&mut plant, 2);
         let did = worked(&server, folder.path());
         assert_eq!(did.complained.matches(said).count(), 1, "{did:?}");
         assert_eq!(states(&server), [["waiting", "0"], ["waiting", "0"]]);
@@ -99,7 +97,7 @@ fn a_board_that_cannot_be_judged_as_it_is_shared_costs_no_attempt_and_is_named()
         worked(&server, folder.path());
         assert_eq!(states(&server), [["done", "1"], ["done", "1"]]);
         assert!(plant.share(&board(0, "mock"), "engel").unwrap());
-        plant.add_jobs(&job(&plan, &any), 1).unwrap();
+        add(&mut plant, 1);
         worked(&server, folder.path());
         assert_eq!(server.rows("SELECT lane FROM run ORDER BY id DESC LIMIT 1"), [["shelf-0"]]);
     }

@@ -10,12 +10,11 @@ use halfrow::verdict::StoppedBy;
 use halfrow_station::run::RunError;
 use halfrow_station::store::{SINK_OF_PLANT, Store};
 use halfrow_station::work::WorkError;
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 use serde_json::Value;
 
-use super::{any, job, plan, run_out, settings, shared};
-use crate::common::{Did, HANG, command, did_in, engel, program, query, reason, until};
+use super::{add, job, plan, run_out, settings, shared};
+use crate::common::{Did, HANG, command, did_in, engel, program, query, reason, signal, until};
 use crate::plant::clocks::FAST;
 use crate::plant::server::Server;
 
@@ -47,9 +46,9 @@ fn jobs_are_judged_by_whoever_is_free_and_each_once() {
         ..super::board(5, "mock")
     };
     plant.share(&broken, "engel").unwrap();
-    let (plan, any) = (plan(), any());
+    let plan = plan();
     let wanted = halfrow_station::store::Wanted::Serial("CAT00005".to_owned());
-    plant.add_jobs(&job(&plan, &any), 4).unwrap();
+    add(&mut plant, 4);
     let unit = plant.add_jobs(&job(&plan, &wanted), 1).unwrap();
     let mut stations = ["12", "13"].map(|name| work(&server, name));
     let running: Vec<_> = stations.iter_mut().map(|(_, command)| command.spawn().unwrap()).collect();
@@ -79,8 +78,7 @@ fn jobs_are_judged_by_whoever_is_free_and_each_once() {
 fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     let (server, mut plant) = shared(1);
     plant.share(&endless(0), "engel").unwrap();
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    add(&mut plant, 1);
     let (folder, mut command) = work(&server, "12");
     let mut first = command.spawn().unwrap();
     until_begun(&server, folder.path());
@@ -124,8 +122,7 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
     for number in 0..3 {
         plant.share(&endless(number), "engel").unwrap();
     }
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 3).unwrap();
+    add(&mut plant, 3);
     drop(plant);
     let folder = crate::common::folder();
     let path = settings(&server, folder.path(), "12");
@@ -147,7 +144,7 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
     let connections = "SELECT count(*) FROM pg_stat_activity WHERE application_name = 'halfrow-station'";
     // One connection for what each run holds, if they asked together, and one for what it sends.
     assert!(["2", "3"].contains(&server.rows(connections)[0][0].as_str()));
-    kill(Pid::from_raw(worker.id() as i32), Signal::SIGTERM).unwrap();
+    signal(worker.id(), Signal::SIGTERM);
     let did = Did::from(worker.wait_with_output().unwrap());
     assert_eq!(did.code, Some(143), "{did:?}");
     assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
@@ -199,8 +196,7 @@ fn the_claim_of_a_run_and_its_name_are_on_the_disk_before_its_board_is_touched()
 fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() {
     let (server, mut plant) = shared(0);
     plant.share(&endless(0), "engel").unwrap();
-    let (plan, any) = (plan(), any());
-    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let id = add(&mut plant, 1).remove(0);
     let (folder, mut command) = work(&server, "12");
     let worker = command.spawn().unwrap();
     until_claimed(&server);
@@ -222,8 +218,7 @@ fn a_station_takes_no_job_while_another_one_has_its_name() {
     let (server, mut plant) = shared(1);
     let (_first, mut command) = work(&server, "12");
     assert_eq!(Did::from(command.output().unwrap()).code, Some(0), "there is no job yet");
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    add(&mut plant, 1);
     let (_second, mut command) = work(&server, "12");
     let mut second = command.spawn().unwrap();
     until("the end of the second one", || {

@@ -10,12 +10,11 @@ use halfrow_station::engine::{Engine, LaneState};
 use halfrow_station::floor::Word;
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{Folder, Store};
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 use serde_json::Value;
 
 use super::floor::{HANG, Running, SERIALS, Station};
-use crate::common::{program, silent_board, until};
+use crate::common::{exists, program, signal, silent_board, until};
 
 /// Waits until the lane has connected, and keeps the connection.
 pub(crate) fn connected(listener: &TcpListener) {
@@ -33,7 +32,7 @@ pub(crate) fn connected(listener: &TcpListener) {
 }
 
 /// The process id of the lane that has this run.
-pub(super) fn lane_of(station: &Station, run: &Value) -> i32 {
+pub(super) fn lane_of(station: &Station, run: &Value) -> u32 {
     let noted = station.path("data/spool").join(run.as_str().unwrap()).join("lane.pid");
     std::fs::read_to_string(noted).unwrap().split_whitespace().next().unwrap().parse().unwrap()
 }
@@ -84,12 +83,12 @@ fn a_lane_that_hangs_is_killed_and_recorded_and_the_others_do_not_notice() {
     connected(&listener);
     let hung = running.wait("a step", |news| news["news"] == "doing")["run"].clone();
     let lane = lane_of(&station, &hung);
-    kill(Pid::from_raw(lane), Signal::SIGSTOP).unwrap();
+    signal(lane, Signal::SIGSTOP);
     running.test("2", SERIALS[1]);
     running.state("2", "PASS");
     let ended = running.state("1", "ERROR");
     assert!(ended["shown"]["headline"].as_str().unwrap().contains("sent nothing for 5 s"), "{ended}");
-    assert!(kill(Pid::from_raw(lane), None).is_err(), "it is gone");
+    assert!(!exists(lane), "it is gone");
     assert_eq!(station.query("SELECT cause FROM run WHERE lane = '1'"), ["crash"]);
     running.test("2", SERIALS[1]);
     running.state("2", "RUNNING");
@@ -145,7 +144,7 @@ fn a_signal_ends_all_runs_in_order() {
     let mut running = station.start();
     running.scan(SERIALS[0]);
     connected(&listener);
-    kill(Pid::from_raw(running.id() as i32), Signal::SIGTERM).unwrap();
+    signal(running.id(), Signal::SIGTERM);
     running.state("1", "ERROR");
     assert_eq!(running.end().0, Some(143));
     assert_eq!(station.query("SELECT verdict || ' ' || cause FROM run"), ["ERROR station"]);
@@ -158,19 +157,19 @@ fn a_station_that_is_kept_waiting_for_seconds_goes_on_working() {
     let station = Station::with(&["mock,serial=1"], "");
     let mut running = station.start();
     running.state("1", "READY");
-    let process = Pid::from_raw(running.id() as i32);
-    kill(process, Signal::SIGSTOP).unwrap();
+    let process = running.id();
+    signal(process, Signal::SIGSTOP);
     // Longer than the five seconds after which its engine counts as silent.
     thread::sleep(Duration::from_secs(6));
     let before = waits(process);
-    kill(process, Signal::SIGCONT).unwrap();
+    signal(process, Signal::SIGCONT);
     until("the station to have looked after its engine", || waits(process) > before + 1);
     test_again(&mut running);
     assert_eq!(running.end().0, Some(0));
 }
 
 /// How often the first thread of a process has waited for something.
-fn waits(process: Pid) -> u64 {
+fn waits(process: u32) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap();
     let count = status.lines().find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"));
     count.unwrap().trim().parse().unwrap()

@@ -5,13 +5,12 @@ use std::fs;
 use std::net::TcpListener;
 use std::time::{Duration, Instant};
 
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 use serde_json::Value;
 
 use super::ends::{connected, lane_of};
 use super::floor::{Running, Station};
-use crate::common::{PLAN, silent_board};
+use crate::common::{self, PLAN, silent_board};
 
 /// The resources of a process.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +79,7 @@ fn ended_by(
     running.test("4", &serial);
     connected(listener);
     let run = running.wait("a step", |news| news["news"] == "doing" && news["lane"] == "4")["run"].clone();
-    kill(Pid::from_raw(lane_of(station, &run)), signal).unwrap();
+    common::signal(lane_of(station, &run), signal);
     let begun = Instant::now();
     let is_ended = |news: &Value| news["lane"] == "4" && news["shown"]["serial"] == serial.as_str();
     if signal == Signal::SIGKILL {

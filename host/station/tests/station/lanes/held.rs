@@ -8,12 +8,12 @@ use std::thread;
 use std::time::Duration;
 
 use halfrow::link;
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 use serde_json::Value;
 
 use super::ends::lane_of;
 use super::floor::{HANG, Running, SERIALS, Station, plan};
+use crate::common::signal;
 use crate::runs::identity::answers;
 
 /// A board behind a port, whose own time passes only while it is talked to, or as it is told.
@@ -110,7 +110,7 @@ fn a_board_whose_lane_was_killed_is_said_to_be_held_until_it_is_not() {
     let station = station(&board);
     let mut running = station.start();
     let run = held(&mut running, &board);
-    kill(Pid::from_raw(lane_of(&station, &run)), Signal::SIGKILL).unwrap();
+    signal(lane_of(&station, &run), Signal::SIGKILL);
     assert_eq!(ended(&mut running, SERIALS[0])["verdict"], "ERROR");
     says_when_to_scan_again(&mut running, &board);
     assert_eq!(running.end().0, Some(0));
@@ -127,7 +127,7 @@ fn a_board_whose_station_was_killed_is_said_to_be_held_at_the_next_start() {
     let station = station(&board);
     let mut running = station.start();
     held(&mut running, &board);
-    kill(Pid::from_raw(running.id() as i32), Signal::SIGKILL).unwrap();
+    signal(running.id(), Signal::SIGKILL);
     assert_eq!(running.end().0, None);
     let mut running = station.start();
     says_when_to_scan_again(&mut running, &board);

@@ -6,13 +6,12 @@ use std::process::Command;
 
 use halfrow_station::record::Record;
 use halfrow_station::store::Folder;
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 
 use super::ends::connected;
 use super::floor::{HANG, SERIALS, Station};
 use super::held::{Board, long_plan};
-use crate::common::{program, program_of, silent_board, until_found};
+use crate::common::{program, program_of, signal, silent_board, until_found};
 
 /// Prints what is in `answer`, and keeps a diary of its arguments and of the end of its stdin.
 const LENDER: &str = r#"#!/bin/sh
@@ -175,7 +174,7 @@ fn a_station_that_is_killed_gives_the_place_back() {
     running.test("1", SERIALS[0]);
     connected(&listener);
     assert_eq!(diary(&station), [FREE, HOLD]);
-    kill(Pid::from_raw(running.id() as i32), Signal::SIGKILL).unwrap();
+    signal(running.id(), Signal::SIGKILL);
     assert_eq!(written(&station, 3), [FREE, HOLD, "given back"]);
     drop(running);
     let _again = station.start();

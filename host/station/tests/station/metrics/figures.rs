@@ -4,11 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 
 use super::text::{Figures, assert_sound, promtool, told};
-use crate::common::{self, silent_board, until_found};
+use crate::common::{self, signal, silent_board, until_found};
 use crate::lanes::ends::connected;
 use crate::pages::station::{PUBLIC, SERIALS, Serving, Station};
 use crate::plant::server::Server;
@@ -113,7 +112,7 @@ fn a_lane_that_was_killed_and_a_result_that_is_not_saved_are_told() {
     let run = station.query("SELECT id FROM run").remove(0);
     let noted = fs::read_to_string(station.path("data/spool").join(run).join("lane.pid")).unwrap();
     let lane = noted.split_whitespace().next().unwrap().parse().unwrap();
-    kill(Pid::from_raw(lane), Signal::SIGSTOP).unwrap();
+    signal(lane, Signal::SIGSTOP);
     let killed = in_state(&serving, "1", "error");
     assert_eq!(killed.at("halfrow_lane_kills_total{lane=\"1\"}"), 1.0);
     assert_eq!(killed.at("halfrow_lane_kills_total{lane=\"2\"}"), 0.0);

@@ -7,11 +7,10 @@ use std::process::{Command, Stdio};
 
 use nix::fcntl::OFlag;
 use nix::pty::{grantpt, posix_openpt, ptsname_r, unlockpt};
-use nix::sys::signal::{Signal, kill};
+use nix::sys::signal::Signal;
 use nix::sys::termios::{LocalFlags, tcgetattr};
-use nix::unistd::Pid;
 
-use crate::common::{program, until};
+use crate::common::{program, signal, until};
 use crate::pages::station::Station;
 
 /// Otherwise whoever types next at that terminal does so blind.
@@ -42,7 +41,7 @@ fn a_terminal_shows_what_is_typed_again_whatever_ends_the_program_at_the_prompt(
         if by_key {
             terminal.write_all(b"A-00\x03").unwrap();
         } else {
-            kill(Pid::from_raw(child.id().try_into().unwrap()), Signal::SIGTERM).unwrap();
+            signal(child.id(), Signal::SIGTERM);
         }
         until("the end of the program", || child.try_wait().unwrap().is_some());
         assert!(shows(), "by key: {by_key}");

@@ -13,7 +13,7 @@ use super::waiting::{await_sent, station};
 use crate::common::{NO_AUDIT, SERIALS, logged, query};
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
-use crate::jobs::{any, board, job, plan, worker};
+use crate::jobs::{add, board, worker};
 
 /// Empties the plant's tables.
 fn emptied(server: &Server) {
@@ -84,7 +84,7 @@ fn a_job_that_was_judged_after_the_copy_of_its_plant_is_done_by_the_run_that_is_
     let server = Server::prepared();
     let mut plant = Plant::connect(&server.address()).unwrap();
     assert!(plant.share(&board(0, "mock"), "engel").unwrap());
-    plant.add_jobs(&job(&plan(), &any()), 1).unwrap();
+    add(&mut plant, 1);
     drop(plant);
     let mut client = server.client("postgres");
     client.batch_execute("CREATE DATABASE kept TEMPLATE plant").unwrap();

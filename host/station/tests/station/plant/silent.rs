@@ -12,12 +12,11 @@ use halfrow_station::outbox::{Standing, round};
 use halfrow_station::store::{PlantAddress, PlantLink, SINK_OF_PLANT, SharedStore, Turn, Waiter};
 use halfrow_station::work::{Held, Holding};
 
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 
 use super::sent::sink;
 use super::server::Server;
-use crate::common::{Killed, command, folder, now_ms, program, until, until_found};
+use crate::common::{Killed, command, folder, now_ms, program, signal, until, until_found};
 use crate::history::made::{End, Made, Run};
 use crate::jobs::{settings_of, shared};
 
@@ -169,7 +168,7 @@ fn the_hands_of_a_station_do_not_wait_for_each_other_s_answers() {
     until("its hands", || hands(worker.id()) == HANDS - 1);
     way.is_silent(true);
     until("a question of each", || way.swallowed.load(Ordering::SeqCst) >= HANDS);
-    kill(Pid::from_raw(worker.id() as i32), Signal::SIGTERM).unwrap();
+    signal(worker.id(), Signal::SIGTERM);
     let ended = until_found("its end", || worker.try_wait().unwrap().ok_or("at work"));
     assert_eq!(ended.code(), Some(143));
 }

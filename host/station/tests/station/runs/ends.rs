@@ -12,10 +12,11 @@ use halfrow_station::lane::child::{carry_out, orders};
 use halfrow_station::lane::{Control, Job, MEMORY_MIB, Message, Ruling};
 use halfrow_station::plan::Plan;
 use halfrow_station::record::{RunCause, StepOutcome, StepRecord};
+use nix::sys::signal::Signal;
 
 use super::bench::{Did, PLAN, Station};
 use super::identity::{device, one_after_the_other};
-use crate::common::silent_board;
+use crate::common::{exists, signal, silent_board};
 use crate::lanes::ends::connected;
 
 #[test]
@@ -201,7 +202,7 @@ fn a_call_that_is_wrong_begins_no_run() {
 }
 
 /// The process id of the lane, once it has connected to the board and the station has heard from it.
-pub(crate) fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
+pub(crate) fn lane_of(station: &Station, listener: &TcpListener) -> u32 {
     connected(listener);
     let spool = std::fs::read_dir(station.data().join("spool")).unwrap().next().unwrap().unwrap().path();
     let begun = Instant::now();
@@ -216,17 +217,8 @@ pub(crate) fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
     }
 }
 
-fn signal(process: i32, signal: nix::sys::signal::Signal) {
-    nix::sys::signal::kill(nix::unistd::Pid::from_raw(process), signal).unwrap();
-}
-
-fn exists(process: i32) -> bool {
-    nix::sys::signal::kill(nix::unistd::Pid::from_raw(process), None).is_ok()
-}
-
 #[test]
 fn a_lane_that_hangs_is_killed_and_recorded() {
-    use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
     let running = station.begin("CAT00001", &target, &["--silence", "5"]);
@@ -243,7 +235,6 @@ fn a_lane_that_hangs_is_killed_and_recorded() {
 
 #[test]
 fn a_lane_that_dies_is_recorded() {
-    use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
     let running = station.begin("CAT00001", &target, &[]);
@@ -256,12 +247,11 @@ fn a_lane_that_dies_is_recorded() {
 
 #[test]
 fn a_run_that_is_stopped_ends_in_order() {
-    use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
     let running = station.begin("CAT00001", &target, &[]);
     lane_of(&station, &listener);
-    signal(running.id() as i32, Signal::SIGINT);
+    signal(running.id(), Signal::SIGINT);
     let did = Did::from(running.wait_with_output().unwrap());
     assert_eq!(did.code, Some(130), "{did:?}");
     assert_eq!(station.query("SELECT cause FROM run"), ["operator"]);
@@ -270,12 +260,11 @@ fn a_run_that_is_stopped_ends_in_order() {
 /// The station is killed in the middle of a run: its lane ends with it, and the run becomes an ERROR at the next start.
 #[test]
 fn a_run_that_is_found_open_is_an_error() {
-    use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
     let mut running = station.begin("CAT00001", &target, &[]);
     let lane = lane_of(&station, &listener);
-    signal(running.id() as i32, Signal::SIGKILL);
+    signal(running.id(), Signal::SIGKILL);
     running.wait().unwrap();
     let begun = Instant::now();
     while exists(lane) {

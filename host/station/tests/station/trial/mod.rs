@@ -24,7 +24,7 @@ use tempfile::TempDir;
 
 use crate::common::{Over, engel, query, reason};
 use crate::history::generated::Draw;
-use crate::jobs::{any, board, job, plan, run_out};
+use crate::jobs::{add, board, run_out};
 use crate::plant::server::Server;
 use crate::plant::way::{Cut, way};
 use found::Found;
@@ -89,7 +89,7 @@ impl Trial {
         for number in 0..stations + stations / 10 + 1 {
             plant.share(&board(number as usize, "mock"), "engel").unwrap();
         }
-        plant.add_jobs(&job(&plan(), &any()), shape.boards).unwrap();
+        add(&mut plant, shape.boards);
         drop(plant);
         if shape.networks > 0 {
             network::opened(&mut server);

@@ -7,13 +7,12 @@ use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use nix::sys::signal::{Signal, kill};
-use nix::unistd::Pid;
+use nix::sys::signal::Signal;
 use tempfile::TempDir;
 
 use super::Trial;
 use super::network::Network;
-use crate::common::{self, program};
+use crate::common::{self, program, signal};
 use crate::history::generated::Draw;
 
 /// How long each step of ending a station may take, over a cable that was just plugged in.
@@ -96,11 +95,10 @@ impl Station<'_> {
     /// Stops the station for longer than its leases last.
     fn stand_still(&self, child: &Child) {
         let Some(stall) = self.trial.shape.stall else { return };
-        let signal = |signal| kill(Pid::from_raw(child.id() as i32), signal).unwrap();
         self.trial.happened.stalls.fetch_add(1, Ordering::Relaxed);
-        signal(Signal::SIGSTOP);
+        signal(child.id(), Signal::SIGSTOP);
         thread::sleep(stall);
-        signal(Signal::SIGCONT);
+        signal(child.id(), Signal::SIGCONT);
     }
 
     /// Unplugs its network for a while, sometimes for longer than its leases last.
@@ -114,7 +112,7 @@ impl Station<'_> {
 
     /// Ends it, and sends what it still has.
     fn end(&self, mut child: Child) {
-        kill(Pid::from_raw(child.id() as i32), Signal::SIGTERM).unwrap();
+        signal(child.id(), Signal::SIGTERM);
         self.until(|| child.try_wait().unwrap().is_some());
         // What was killed in a run is closed by the next start.
         self.until(|| self.command(&["work", "--once"]).status().unwrap().success());
