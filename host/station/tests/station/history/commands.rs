@@ -45,7 +45,7 @@ fn made() -> Made {
         ("S2", End::Error(RunCause::Crash), 2),
         ("S3", End::Pass, 24),
     ] {
-        made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of(serial, end) });
+        made.run(&Run::of(serial, end).at_hour(hour));
     }
     made
 }
@@ -254,7 +254,7 @@ fn what_each_command_prints_is_as_its_schema_says() {
         started_ms: BEGIN_MS,
         ..Run::of("S5", End::TooLateAndWrong)
     });
-    made.run(&Run { started_ms: BEGIN_MS + HOUR_MS, ..Run::of("S5", End::Open) });
+    made.run(&Run::of("S5", End::Open).at_hour(1));
     let failed = json(&made, &["history", "--serial", "S5", "--verdict", "fail"])["runs"][0]["id"].clone();
     let folder = made.closed();
     said(&folder, &["waive", failed.as_str().unwrap(), "--reason", "used as it is", "--operator", "weber"]);

@@ -57,7 +57,7 @@ fn a_clock_that_is_set_back_puts_no_run_in_front_of_an_earlier_one() {
 fn what_was_counted_wrong_is_told_by_check() {
     let mut made = Made::new();
     for (end, hour) in [End::Fail(&["memory"]), End::Pass].into_iter().zip(0..) {
-        made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S1", end) });
+        made.run(&Run::of("S1", end).at_hour(hour));
     }
     let faults = || check(&made.folder()).unwrap().faults.iter().map(ToString::to_string).collect::<Vec<_>>();
     assert_eq!(faults(), Vec::<String>::new());

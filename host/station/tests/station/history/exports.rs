@@ -12,7 +12,7 @@ use halfrow_station::record::{Record, RunCause, judged};
 use tempfile::TempDir;
 
 use super::commands::did;
-use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::made::{End, Made, Run};
 
 /// A run of every kind of end, by operators whose names need care.
 fn made() -> Made {
@@ -27,8 +27,7 @@ fn made() -> Made {
     for (end, hour) in ends.into_iter().zip(0..) {
         let operator =
             ["weber", "O'Neil, \"J\"", "two\nlines", "\u{1}\u{fffe}<&>", "=1+1"][hour as usize].to_owned();
-        let started_ms = BEGIN_MS + hour * HOUR_MS;
-        made.run(&Run { operator, started_ms, ..Run::of(&format!("S{hour}"), end) });
+        made.run(&Run { operator, ..Run::of(&format!("S{hour}"), end).at_hour(hour) });
     }
     made.run(&Run { lane: "2".to_owned(), ..Run::of("S9", End::Open) });
     made

@@ -18,10 +18,9 @@ fn made() -> Made {
     let mut made = Made::new();
     made.run(&Run::of("S1", End::Pass));
     for (serial, evidence, hour) in [("S2", vec!["old", "shared"], 1), ("S3", vec!["new", "shared"], 48)] {
-        let started_ms = BEGIN_MS + hour * HOUR_MS;
-        made.run(&Run { started_ms, evidence, ..Run::of(serial, End::Fail(&["memory"])) });
+        made.run(&Run { evidence, ..Run::of(serial, End::Fail(&["memory"])).at_hour(hour) });
     }
-    made.run(&Run { started_ms: BEGIN_MS + 49 * HOUR_MS, ..Run::of("S4", End::Open) });
+    made.run(&Run::of("S4", End::Open).at_hour(49));
     made
 }
 

@@ -267,7 +267,7 @@ fn a_run_whose_record_is_damaged_is_told_as_such() {
 fn a_unit_s_page_tells_its_story_in_every_language() {
     let mut made = Made::new();
     for (end, hour) in [End::Error(RunCause::Link), End::Fail(&["memory"]), End::Pass].into_iter().zip(0..) {
-        made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S1", end) });
+        made.run(&Run::of("S1", end).at_hour(hour));
     }
     let served = Served::of(made);
     let unknown = served.get("/unit?serial=NOPE");

@@ -11,8 +11,7 @@ use super::served::Served;
 fn evidence_that_nobody_removed_is_not_said_to_have_been_old() {
     let mut made = Made::new();
     let mut fail = |serial, evidence, hour| {
-        let started_ms = BEGIN_MS + hour * HOUR_MS;
-        made.run(&Run { evidence: vec![evidence], started_ms, ..Run::of(serial, End::Fail(&["memory"])) })
+        made.run(&Run { evidence: vec![evidence], ..Run::of(serial, End::Fail(&["memory"])).at_hour(hour) })
     };
     let (old, lost) = (fail("S1", "old", 1), fail("S2", "new", 48));
     assert_eq!(prune(&mut made.store, BEGIN_MS + 24 * HOUR_MS, "engel").unwrap().pieces, 1);

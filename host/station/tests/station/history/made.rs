@@ -75,6 +75,11 @@ impl Run {
             production: true,
         }
     }
+
+    /// The same, begun so many hours after [`BEGIN_MS`].
+    pub(crate) fn at_hour(self, hour: i64) -> Self {
+        Self { started_ms: BEGIN_MS + hour * HOUR_MS, ..self }
+    }
 }
 
 /// A store, and what was entered into it.

@@ -112,9 +112,7 @@ fn runs_that_are_added_meanwhile_move_nothing() {
     let (mut made, entered) = made();
     let all = wanted(&entered, &Filter::default());
     let first = page(&made.now(), &Filter::default(), None, 10).unwrap();
-    let mut newer = Run::of("NEW", End::Pass);
-    newer.started_ms = BEGIN_MS + 100 * HOUR_MS;
-    made.run(&newer);
+    made.run(&Run::of("NEW", End::Pass).at_hour(100));
     let second = page(&made.now(), &Filter::default(), first.next.as_ref(), 10).unwrap();
     assert_eq!(
         second.runs.iter().map(|run| &run.id).collect::<Vec<_>>(),

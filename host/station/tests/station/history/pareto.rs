@@ -22,8 +22,7 @@ fn made() -> Made {
         ("S6", End::Error(RunCause::Link), "1"),
     ];
     for ((serial, end, lane), hour) in runs.into_iter().zip(0..) {
-        let started_ms = BEGIN_MS + hour * HOUR_MS;
-        made.run(&Run { lane: lane.to_owned(), started_ms, ..Run::of(serial, end) });
+        made.run(&Run { lane: lane.to_owned(), ..Run::of(serial, end).at_hour(hour) });
     }
     made
 }

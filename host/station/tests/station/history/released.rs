@@ -15,7 +15,7 @@ use rusqlite::Connection;
 use tempfile::TempDir;
 
 use super::commands::did;
-use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::made::{BEGIN_MS, End, Made, Run};
 use crate::common::{program, query, reason};
 
 /// Each format, and the name of its export.
@@ -325,7 +325,7 @@ fn sum_the_views_anew() {
 /// One run of every kind, as the station enters them.
 pub(crate) fn history() -> Made {
     let mut made = Made::new();
-    let run = |serial, end, hour| Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of(serial, end) };
+    let run = |serial, end, hour| Run::of(serial, end).at_hour(hour);
     let evidence = vec!["what it told", "what it logged"];
     let failed = made.run(&Run { evidence, ..run("S1", End::Fail(&["memory", "clock"]), 0) });
     made.run(&run("S1", End::Pass, 1));

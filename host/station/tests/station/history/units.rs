@@ -3,7 +3,7 @@
 use halfrow_station::history::unit::units;
 use halfrow_station::record::RunCause;
 
-use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::made::{BEGIN_MS, End, Made, Run};
 use super::served::Served;
 use crate::common::reason;
 
@@ -13,8 +13,8 @@ fn a_unit_has_its_runs_and_nobody_elses_with_all_that_belongs_to_them() {
     let ends = [End::Error(RunCause::Link), End::Fail(&["memory", "row factor"]), End::Pass];
     let mut ids = Vec::new();
     for (end, hour) in ends.into_iter().zip(0..) {
-        made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S2", End::Fail(&["clock"])) });
-        ids.push(made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S1", end) }));
+        made.run(&Run::of("S2", End::Fail(&["clock"])).at_hour(hour));
+        ids.push(made.run(&Run::of("S1", end).at_hour(hour)));
     }
     made.store.waive(&ids[1], "engel", &reason("used as it is")).unwrap();
     let units = units(&made.now(), "S1").unwrap();
@@ -46,8 +46,7 @@ fn runs_that_do_not_count_are_no_judgements_of_a_unit() {
     let mut ids = Vec::new();
     for serial in ["HR:MOCK:1", "S1"] {
         for (end, hour) in [End::Fail(&["memory"]), End::Pass].into_iter().zip(0..) {
-            let started_ms = BEGIN_MS + hour * HOUR_MS;
-            ids.push(made.run(&Run { started_ms, ..Run::of(serial, end) }));
+            ids.push(made.run(&Run::of(serial, end).at_hour(hour)));
         }
     }
     let served = Served::of(made);

@@ -100,9 +100,9 @@ fn a_record_that_no_row_names_stays_and_what_it_names() {
 #[test]
 fn what_a_record_without_a_row_names_does_not_go_with_the_old_run_that_has_it_too() {
     let mut made = Made::new();
-    let run = |serial, hour| {
-        let (started_ms, evidence) = (BEGIN_MS + hour * HOUR_MS, vec!["seen"]);
-        Run { started_ms, evidence, ..Run::of(serial, End::Fail(&["memory"])) }
+    let run = |serial, hour| Run {
+        evidence: vec!["seen"],
+        ..Run::of(serial, End::Fail(&["memory"])).at_hour(hour)
     };
     made.run(&run("S1", 0));
     let folder = made.closed();
@@ -134,8 +134,7 @@ fn a_record_that_another_one_of_its_run_took_the_place_of_keeps_nothing_from_goi
 fn what_a_record_names_stays_and_is_copied_where_its_rows_are_lost() {
     let mut made = Made::new();
     for (serial, evidence, hour) in [("S1", vec!["shared"], 0), ("S2", vec!["shared", "seen"], 48)] {
-        let started_ms = BEGIN_MS + hour * HOUR_MS;
-        made.run(&Run { started_ms, evidence, ..Run::of(serial, End::Fail(&["memory"])) });
+        made.run(&Run { evidence, ..Run::of(serial, End::Fail(&["memory"])).at_hour(hour) });
     }
     let folder = made.folder();
     for hash in query(made.as_ref(), "SELECT sha256 FROM attachment UNION SELECT record_sha256 FROM run") {

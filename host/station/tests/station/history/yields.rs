@@ -82,7 +82,7 @@ pub(crate) fn enter(made: &mut Made, word: &str, hour: i64) {
         "O" => End::Open,
         other => panic!("{other}"),
     };
-    let run = Run { plan, started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of(serial, ends) };
+    let run = Run { plan, ..Run::of(serial, ends).at_hour(hour) };
     let id = made.run(&run);
     if end == "W" {
         made.store.waive(&id, "engel", &reason("used as it is")).unwrap();
@@ -146,8 +146,7 @@ fn of_two_days() -> Made {
         ("A", End::Pass, "2", 24),
         ("B", End::Pass, "2", 25),
     ] {
-        let (lane, started_ms) = (lane.to_owned(), BEGIN_MS + hour * HOUR_MS);
-        made.run(&Run { lane, started_ms, ..Run::of(serial, end) });
+        made.run(&Run { lane: lane.to_owned(), ..Run::of(serial, end).at_hour(hour) });
     }
     made
 }

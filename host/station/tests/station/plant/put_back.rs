@@ -11,7 +11,7 @@ use super::server::Server;
 use super::tables::is_as;
 use super::waiting::{await_sent, station};
 use crate::common::{NO_AUDIT, SERIALS, logged, query};
-use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use crate::history::made::{End, Made, Run};
 use crate::history::released::history;
 use crate::jobs::{add, board, worker};
 
@@ -40,15 +40,14 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     let (mut made, _) = send(history(), server.address());
     let mut client = server.client("postgres");
     client.batch_execute("CREATE DATABASE kept TEMPLATE plant").unwrap();
-    let started_ms = BEGIN_MS + 30 * HOUR_MS;
-    made.run(&Run { lane: "3".to_owned(), started_ms, ..Run::of("S2", End::Pass) });
+    made.run(&Run { lane: "3".to_owned(), ..Run::of("S2", End::Pass).at_hour(30) });
     let (mut made, all) = send(made, server.address());
     assert_eq!(all.sent, 1);
     client.batch_execute("DROP DATABASE plant WITH (FORCE)").unwrap();
     client.batch_execute("ALTER DATABASE kept RENAME TO plant").unwrap();
     let lost = query(made.as_ref(), "SELECT max(id) FROM run WHERE state = 'final'").remove(0);
     // Once a later run is sent, nothing else would show the loss.
-    made.run(&Run { lane: "3".to_owned(), started_ms: started_ms + HOUR_MS, ..Run::of("S3", End::Pass) });
+    made.run(&Run { lane: "3".to_owned(), ..Run::of("S3", End::Pass).at_hour(31) });
     let (folder, store) = made.parts();
     drop(store);
     let again = ["outbox", "again", "plant", "--reason", "its disk broke", "--operator", "engel"];

@@ -10,7 +10,7 @@ use super::sent::{send, sink};
 use super::server::Server;
 use super::tables::is_as;
 use crate::common::{Did, LANE, NO_AUDIT, did_in, plant_settings, query, settings};
-use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use crate::history::made::{End, Made, Run};
 use crate::history::released::history;
 
 /// Runs a command of the station in this folder, with settings that name the plant.
@@ -234,7 +234,7 @@ fn a_station_with_another_folder_is_taken_for_itself_when_a_person_says_so() {
     let (made, refused) = send(Made::new(), server.address());
     assert_eq!((refused.sent, refused.failed), (0, 0), "there is nothing to send");
     let mut made = made;
-    made.run(&Run { started_ms: BEGIN_MS + 40 * HOUR_MS, ..Run::of("S9", End::Pass) });
+    made.run(&Run::of("S9", End::Pass).at_hour(40));
     let (made, refused) = send(made, server.address());
     assert_eq!((refused.sent, refused.is_away), (0, true));
     let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };

@@ -6,7 +6,7 @@ use halfrow_station::store::{Introduction, Plant, PlantAddress, SINK_OF_PLANT, S
 use super::rights::as_station;
 use super::server::Server;
 use super::tables::is_as;
-use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use crate::history::made::{End, Made, Run};
 use crate::history::released::history;
 
 /// Sends everything that is due, until nothing is.
@@ -65,8 +65,7 @@ fn all_that_a_station_keeps_comes_to_the_plant_once() {
     // What comes later is sent on its own.
     let (mut made, all) = send(made, server.address());
     assert_eq!(all, Round::default());
-    let later = BEGIN_MS + 30 * HOUR_MS;
-    made.run(&Run { lane: "3".to_owned(), started_ms: later, ..Run::of("S2", End::Pass) });
+    made.run(&Run { lane: "3".to_owned(), ..Run::of("S2", End::Pass).at_hour(30) });
     let (made, all) = send(made, server.address());
     assert_eq!(all.sent, 1);
     is_as(&server, &made);

@@ -8,7 +8,7 @@ use halfrow_station::record::{BoardSeen, RunCause, StepOutcome};
 use halfrow_station::run::{RunError, recover};
 
 use super::bench::PLAN;
-use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run, step};
+use crate::history::made::{End, Made, Run, step};
 
 const SHIFT: &str = "[shift]\ngood = \"CAT90001\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]";
 
@@ -19,7 +19,7 @@ fn is_production(plan: &str, checked: &[(&str, End)], serial: &str) -> bool {
     for (serial, end) in checked {
         made.run(&Run::of(serial, *end));
     }
-    made.run(&Run { started_ms: BEGIN_MS + 8 * HOUR_MS, ..Run::of(serial, End::Open) });
+    made.run(&Run::of(serial, End::Open).at_hour(8));
     let (recovered, is_production) = recovered(made, plan);
     assert_eq!(recovered, serial);
     is_production
