@@ -291,6 +291,14 @@ pub(crate) fn logged(log: &Path, count: usize, of: &str) {
     });
 }
 
+/// Changes the database of this folder without the program; returns how many rows the last statement changed.
+pub(crate) fn change(data: &Path, text: &str) -> usize {
+    let database = rusqlite::Connection::open(data.join("station.db")).unwrap();
+    database.busy_timeout(HANG).unwrap();
+    database.execute_batch(text).unwrap();
+    database.changes() as usize
+}
+
 /// Reads the database of this folder without the program: the first value of each row.
 pub(crate) fn query(data: &Path, text: &str) -> Vec<String> {
     let database = rusqlite::Connection::open(data.join("station.db")).unwrap();

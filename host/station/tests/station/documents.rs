@@ -47,13 +47,10 @@ fn a_run_is_a_document_whatever_it_comes_to() {
         assert_eq!(crate::runs::bench::sha256sum(&station.store().blobs().path(hash)), hash);
     }
     let recorded = station.query("SELECT id FROM run ORDER BY id");
-    rusqlite::Connection::open(station.store().database())
-        .unwrap()
-        .execute_batch(
-            "UPDATE run SET state = 'open', verdict = NULL, cause = NULL, exit_code = NULL, headline = NULL,
-             ended_ms = NULL, record_sha256 = NULL WHERE cause = 'operator'",
-        )
-        .unwrap();
+    station.change(
+        "UPDATE run SET state = 'open', verdict = NULL, cause = NULL, exit_code = NULL, headline = NULL,
+         ended_ms = NULL, record_sha256 = NULL WHERE cause = 'operator'",
+    );
     let said = document(&run(&station, "CAT00005", "mock"));
     assert_eq!(said["recovered"], serde_json::json!([{ "run": recorded[3], "serial": "CAT00004" }]));
 }
@@ -131,8 +128,7 @@ fn what_check_finds_has_codes() {
         (&well["runs"], &well["faults"], &well["exit_code"]),
         (&1.into(), &Value::Array(vec![]), &0.into())
     );
-    let database = rusqlite::Connection::open(station.store().database()).unwrap();
-    database.execute("UPDATE plan SET version = '2'", []).unwrap();
+    station.change("UPDATE plan SET version = '2'");
     let found = check();
     assert_eq!((&found["faults"][0]["code"], &found["exit_code"]), (&"table-row-differs".into(), &3.into()));
     assert_eq!(found["faults"][0]["parameters"]["column"], "version");
@@ -190,8 +186,7 @@ fn every_record_is_as_its_schema_says() {
     }
     let last = "UPDATE run SET state = 'open', verdict = NULL, cause = NULL, exit_code = NULL, headline = NULL, ended_ms = NULL,
                 record_sha256 = NULL WHERE unit_id = (SELECT id FROM unit WHERE serial = 'CAT00004')";
-    let database = rusqlite::Connection::open(station.store().database()).unwrap();
-    assert_eq!(database.execute(last, []).unwrap(), 1);
+    assert_eq!(station.change(last), 1);
     station.run("CAT00005", "mock");
     let data = station.data().display().to_string();
     let schema: Value = serde_json::from_str(RECORD).unwrap();

@@ -61,14 +61,13 @@ fn what_was_counted_wrong_is_told_by_check() {
     }
     let faults = || check(&made.folder()).unwrap().faults.iter().map(ToString::to_string).collect::<Vec<_>>();
     assert_eq!(faults(), Vec::<String>::new());
-    let database = Connection::open(made.folder().database()).unwrap();
     for (change, told) in [
         ("UPDATE day_count SET passed = passed + 1", "passed is `1`, and the records say `0`"),
         ("UPDATE retest SET last_verdict = 'FAIL'", "last_verdict is `FAIL`, and the records say `PASS`"),
         ("DELETE FROM failure WHERE kind = 'check'", "table failure has no row"),
     ] {
         let before = faults().len();
-        database.execute_batch(change).unwrap();
+        made.change(change);
         let after = faults();
         assert_eq!(after.len(), before + 1, "{after:?}");
         assert!(after.iter().any(|fault| fault.contains(told)), "{after:?}");

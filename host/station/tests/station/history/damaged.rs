@@ -5,7 +5,6 @@ use std::fs;
 use halfrow_station::check::{Fault, check};
 use halfrow_station::kept::{CopyError, backup, faults, restore};
 use halfrow_station::store::{Folder, Snapshot, Store};
-use rusqlite::Connection;
 
 use super::commands::did;
 use super::made::{End, Made, Run};
@@ -17,7 +16,7 @@ fn changed(statements: &str) -> Made {
     let mut made = Made::new();
     made.run(&Run::of("S1", End::Pass));
     made.run(&Run { lane: "2".to_owned(), ..Run::of("S2", End::Fail(&["memory"])) });
-    Connection::open(made.folder().database()).unwrap().execute_batch(statements).unwrap();
+    made.change(statements);
     made
 }
 

@@ -310,11 +310,7 @@ fn a_copy_that_would_not_be_restored_is_kept_and_told() {
     let place = tempfile::tempdir().unwrap();
     let [whole, copy, again] = ["whole", "copy", "again"].map(|name| place.path().join(name));
     assert_eq!(did(&made, &["backup", whole.to_str().unwrap()]).0, 0);
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
-    assert_eq!(
-        database.execute("UPDATE run SET headline = 'all is well' WHERE verdict = 'FAIL'", []).unwrap(),
-        2
-    );
+    assert_eq!(made.change("UPDATE run SET headline = 'all is well' WHERE verdict = 'FAIL'"), 2);
     let (code, said, complained) = did(&made, &["backup", copy.to_str().unwrap()]);
     assert_eq!((code, complained.as_str()), (3, ""), "{said}");
     let lines: Vec<_> = said.lines().collect();

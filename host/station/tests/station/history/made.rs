@@ -11,7 +11,7 @@ use halfrow_station::record::{
 use halfrow_station::store::{Folder, Snapshot, Store, StoreError, Stored};
 use tempfile::TempDir;
 
-use crate::common::PLAN;
+use crate::common::{PLAN, change};
 
 /// 1 November 2026, midnight UTC.
 pub(crate) const BEGIN_MS: i64 = 1_793_491_200_000;
@@ -102,6 +102,11 @@ impl Made {
 
     pub(crate) fn folder(&self) -> Folder {
         Folder::new(self.folder.path())
+    }
+
+    /// Changes the database without the program; returns how many rows the last statement changed.
+    pub(crate) fn change(&self, text: &str) -> usize {
+        change(self.folder.path(), text)
     }
 
     /// The folder and the store.

@@ -16,7 +16,7 @@ use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{BEGIN_MS, End, Made, Run};
-use crate::common::{program, query, reason};
+use crate::common::{change, program, query, reason};
 
 /// Each format, and the name of its export.
 const FORMATS: [(&str, &str); 4] =
@@ -61,9 +61,8 @@ fn sums() -> String {
 /// A station's folder as a program with this schema left it.
 pub(super) fn left(number: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let database = Connection::open(folder.path().join("station.db")).unwrap();
     let text = fs::read_to_string(database_of(number)).unwrap();
-    database.execute_batch(&text).unwrap();
+    change(folder.path(), &text);
     copied(&released("blobs"), &folder.path().join("blobs"));
     folder
 }
@@ -141,10 +140,8 @@ fn copies(data: &Path) -> Vec<String> {
 #[test]
 fn a_database_that_cannot_be_brought_up_to_date_is_the_earlier_programs_still() {
     let data = left(1);
-    let other = Connection::open(data.path().join("station.db")).unwrap();
     // The newest schema has another table of this name.
-    other.execute_batch("CREATE TABLE mismatch (n)").unwrap();
-    drop(other);
+    change(data.path(), "CREATE TABLE mismatch (n)");
     let refused = Store::open(&Folder::new(data.path())).unwrap_err();
     assert!(format!("{refused:?}").contains("mismatch already exists"), "{refused:?}");
     assert_eq!(query(data.path(), "SELECT max(n) FROM schema_version"), ["1"]);

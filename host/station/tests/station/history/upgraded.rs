@@ -1,10 +1,9 @@
 //! What a station was still to send when a newer program came.
 
 use halfrow_station::store::{Folder, Store};
-use rusqlite::Connection;
 
 use super::released::{left, newest};
-use crate::common::query;
+use crate::common::{change, query};
 
 /// The first schema with an outbox. Those in `released` are empty.
 const WITH_OUTBOX: usize = 3;
@@ -18,9 +17,7 @@ fn what_was_sent_and_what_was_not_stays_so_through_an_upgrade() {
         SELECT 'share', 'run', id, 2, 5, iif(verdict = 'PASS', 6, NULL), iif(verdict = 'FAIL', 7, NULL), 'no' FROM run";
     for number in WITH_OUTBOX..=newest() {
         let data = left(number);
-        let before = Connection::open(data.path().join("station.db")).unwrap();
-        before.execute_batch(entered).unwrap();
-        drop(before);
+        change(data.path(), entered);
         let before = query(data.path(), outbox);
         assert!(
             before.iter().any(|row| row.contains(" 6 /")) && before.iter().any(|row| row.contains("/ 7 "))

@@ -98,7 +98,7 @@ fn a_unit_has_not_passed_by_a_run_that_does_not_count() {
     add(&mut plant, &refusing, &unit, 1);
     worked(&server, (folder.path(), "12"), &[&refusing]);
     assert!(plant.refuses(&refusing, "CAT00000").unwrap().is_some());
-    server.client("plant").batch_execute("UPDATE run SET nth = 0").unwrap();
+    server.change("UPDATE run SET nth = 0");
     assert!(plant.refuses(&refusing, "CAT00000").unwrap().is_none());
     add(&mut plant, &refusing, &any(), 1);
     worked(&server, (folder.path(), "12"), &[&refusing]);

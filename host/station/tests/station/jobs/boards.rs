@@ -31,10 +31,7 @@ fn who_waits_longest_is_the_next_and_a_job_comes_after_people() {
     assert_eq!(plant.wait(&third).unwrap(), Turn::Waits { before: 1 }, "another waits longer");
     assert_eq!(plant.claim(&worker("12")).unwrap(), None);
     // A waiter that does not ask again is forgotten.
-    server
-        .client("plant")
-        .batch_execute("UPDATE waiter SET until_ms = 0 WHERE holder = '12 second'")
-        .unwrap();
+    server.change("UPDATE waiter SET until_ms = 0 WHERE holder = '12 second'");
     let Turn::Held(held) = plant.wait(&third).unwrap() else { panic!("it is the third's turn") };
     assert_eq!((held.holder.as_str(), held.fence), ("12 third", 2));
     plant.give_back(&held).unwrap();
@@ -148,7 +145,7 @@ fn what_those_in_front_are_to_get_is_left_to_them() {
             waiter.holder,
             now_ms() + 600_000
         );
-        server.client("plant").batch_execute(&wait).unwrap();
+        server.change(&wait);
     }
     for number in 0..2 {
         assert!(plant.put_in(&format!("shelf-{number}"), engel(&reason("it was cleaned"))).unwrap());

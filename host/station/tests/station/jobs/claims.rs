@@ -218,7 +218,7 @@ fn put_back(claims: usize) -> (Server, Plant, Claim) {
     let last = claimed.last().unwrap();
     let back = "UPDATE job SET state = 'waiting', fence = 0, attempts = 0, holder = NULL, until_ms = NULL;
         UPDATE board SET fence = 0, holder = NULL, until_ms = NULL";
-    server.client("plant").batch_execute(back).unwrap();
+    server.change(back);
     (server, plant, last)
 }
 

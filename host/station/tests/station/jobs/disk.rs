@@ -7,8 +7,7 @@ use halfrow_station::settings::Settings;
 use tempfile::TempDir;
 
 use super::{add, at_work, judged, settings, shared, with_a_job};
-use crate::common::{Did, Killed, command, folder, program, query, until_found};
-use crate::lanes::floor::HANG;
+use crate::common::{Did, Killed, change, command, folder, program, query, until_found};
 use crate::plant::server::Server;
 
 /// A station in its own folder, whose database can be made to refuse changes.
@@ -43,9 +42,7 @@ impl Station {
     }
 
     fn change(&self, text: &str) {
-        let database = rusqlite::Connection::open(self.folder.path().join("data/station.db")).unwrap();
-        database.busy_timeout(HANG).unwrap();
-        database.execute_batch(text).unwrap();
+        change(&self.folder.path().join("data"), text);
     }
 }
 
@@ -102,8 +99,7 @@ fn a_verdict_is_told_though_the_store_does_not_say_whether_the_plant_has_it() {
     let folder = folder();
     let settings = Settings::load_without_lanes(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
-    let database = rusqlite::Connection::open(folder.path().join("data/station.db")).unwrap();
-    database.execute_batch("ALTER TABLE outbox RENAME TO elsewhere").unwrap();
+    change(&folder.path().join("data"), "ALTER TABLE outbox RENAME TO elsewhere");
     let judged = judged(&work);
     assert_eq!(judged.saved.record.conclusion.verdict, Verdict::Pass);
     assert!(!judged.is_sent);

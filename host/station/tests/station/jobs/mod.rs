@@ -100,10 +100,7 @@ fn states(server: &Server) -> Vec<Vec<String>> {
 
 /// Lets all leases run out, as if their holders had been silent for long.
 pub(crate) fn run_out(server: &Server) {
-    server
-        .client("plant")
-        .batch_execute("UPDATE job SET until_ms = 0; UPDATE board SET until_ms = 0")
-        .unwrap();
+    server.change("UPDATE job SET until_ms = 0; UPDATE board SET until_ms = 0");
 }
 
 /// The settings of a worker of this name in `folder`.

@@ -50,7 +50,7 @@ fn a_verdict_does_not_wait_for_a_plant_that_cannot_be_told_that_a_board_is_out_w
     let refuses =
         "CREATE FUNCTION refuses() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RAISE 'not now'; END $$;
         CREATE TRIGGER refuses BEFORE UPDATE OF out ON board FOR EACH ROW EXECUTE FUNCTION refuses()";
-    server.client("plant").batch_execute(refuses).unwrap();
+    server.change(refuses);
     let folder = crate::common::folder();
     let (settings, stuck) = with_stuck_lanes(&server, folder.path());
     let work = at_work(&settings, stuck.program.clone());

@@ -51,23 +51,22 @@ fn a_board_that_ended_in_an_error_is_tried_again_when_no_other_would_do_or_after
     let first = claim();
     assert_eq!(board(first.as_ref()).as_deref(), Some("shelf-1"));
     assert_eq!(claim(), None, "the good board is in use");
-    let change = |text: &str| server.client("plant").batch_execute(text).unwrap();
     let ended = |minutes: u32| {
         let ms = "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)";
-        change(&format!("UPDATE run SET ended_ms = {ms} - {minutes} * 60000 WHERE verdict = 'ERROR'"));
+        server.change(&format!("UPDATE run SET ended_ms = {ms} - {minutes} * 60000 WHERE verdict = 'ERROR'"));
     };
     ended(9);
     assert_eq!(claim(), None);
-    change("UPDATE run SET cause = 'operator' WHERE verdict = 'ERROR'");
+    server.change("UPDATE run SET cause = 'operator' WHERE verdict = 'ERROR'");
     let second = claim();
     assert_eq!(board(second.as_ref()).as_deref(), Some("shelf-0"), "a person ended it");
-    change("UPDATE run SET cause = 'link' WHERE verdict = 'ERROR'");
-    change("UPDATE job SET state = 'waiting' WHERE state = 'claimed'; UPDATE board SET until_ms = 0");
+    server.change("UPDATE run SET cause = 'link' WHERE verdict = 'ERROR'");
+    server.change("UPDATE job SET state = 'waiting' WHERE state = 'claimed'; UPDATE board SET until_ms = 0");
     ended(11);
     assert_eq!([claim(), claim()].map(|claim| board(claim.as_ref()).unwrap()), ["shelf-1", "shelf-0"]);
-    change("UPDATE job SET state = 'waiting' WHERE state = 'claimed'; UPDATE board SET until_ms = 0");
+    server.change("UPDATE job SET state = 'waiting' WHERE state = 'claimed'; UPDATE board SET until_ms = 0");
     ended(0);
-    change("UPDATE board SET out = 'lent' WHERE name = 'shelf-1'");
+    server.change("UPDATE board SET out = 'lent' WHERE name = 'shelf-1'");
     assert_eq!(board(claim().as_ref()).as_deref(), Some("shelf-0"), "there is no other");
 }
 

@@ -90,7 +90,7 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     assert_eq!((none.code, none.said.as_str()), (Some(0), ""), "{none:?}");
     run_out(&server);
     plant.share(&super::board(0, "mock"), "engel").unwrap();
-    server.client("plant").batch_execute("UPDATE board SET target = 'mock', holder = NULL").unwrap();
+    server.change("UPDATE board SET target = 'mock', holder = NULL");
     let did = Did::from(command.output().unwrap());
     assert!(did.said.contains("\"verdict\":\"PASS\""), "{did:?}");
     assert_eq!(server.rows("SELECT state, fence FROM job"), [["done", "2"]]);
@@ -241,7 +241,7 @@ fn a_station_takes_no_job_while_another_one_has_its_name() {
 #[test]
 fn a_worker_compares_the_clocks_before_its_first_run() {
     let (server, _plant, _) = super::with_a_job();
-    server.client("plant").batch_execute(FAST).unwrap();
+    server.change(FAST);
     let folder = crate::common::folder();
     let path = settings(&server, folder.path(), "12");
     let settings = halfrow_station::settings::Settings::load_without_lanes(&path).unwrap();

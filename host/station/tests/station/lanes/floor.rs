@@ -77,6 +77,11 @@ impl Station {
         Running { stdin: child.stdin.take(), child, news, heard: Vec::new() }
     }
 
+    /// Changes the database without the program; returns how many rows the last statement changed.
+    pub(crate) fn change(&self, text: &str) -> usize {
+        common::change(&self.path("data"), text)
+    }
+
     /// Reads the database without the program: the first value of each row.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
         common::query(&self.path("data"), text)

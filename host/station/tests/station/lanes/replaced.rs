@@ -70,9 +70,7 @@ fn a_start_warns_of_a_plan_that_is_another_one_than_runs_were_judged_by_under_it
     let newer = other.replace("version = \"1\"", "version = \"2\"");
     assert_eq!([&plan, &other, &newer].map(|plan| warns(plan)), [false, true, false]);
     // By an ERROR nothing was judged.
-    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
-    database.execute("UPDATE run SET verdict = 'ERROR', cause = 'link'", []).unwrap();
-    drop(database);
+    station.change("UPDATE run SET verdict = 'ERROR', cause = 'link'");
     assert!(!warns(&other));
 }
 

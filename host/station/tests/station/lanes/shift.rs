@@ -73,9 +73,7 @@ fn a_checked_lane_takes_products_until_the_check_is_over() {
     running.scan(SERIALS[2]);
     running.state("1", "PASS");
     running.end();
-    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
-    database.execute("UPDATE run SET started_ms = started_ms - 8 * 3600 * 1000", []).unwrap();
-    drop(database);
+    station.change("UPDATE run SET started_ms = started_ms - 8 * 3600 * 1000");
     let mut running = station.start();
     let out = running.state("1", "OUT");
     assert!(out["note"].as_str().unwrap().contains("the good unit"), "{out}");
@@ -177,9 +175,7 @@ fn a_drawn_fault_that_the_plan_does_not_find_keeps_the_lane_out() {
     fs::write(station.path("plan.toml"), with_mock()).unwrap();
     let did = run_mock(&station);
     assert_eq!(did.code, Some(1), "{did:?}");
-    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
-    database.execute("UPDATE run SET verdict = 'PASS', cause = 'none', exit_code = 0", []).unwrap();
-    drop(database);
+    station.change("UPDATE run SET verdict = 'PASS', cause = 'none', exit_code = 0");
     let target = station.query("SELECT target FROM run")[0].clone();
     let mut running = station.start();
     running.test("1", SERIALS[0]);
@@ -263,8 +259,7 @@ fn lanes_go_on_beside_those_about_which_their_store_fails() {
     let mut running = station.start();
     ["1", "2"].iter().for_each(|lane| drop(good_passes(&mut running, lane)));
     running.end();
-    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
-    database.execute_batch("UPDATE run SET target = CAST(x'ff' AS TEXT)").unwrap();
+    station.change("UPDATE run SET target = CAST(x'ff' AS TEXT)");
     let mut running = station.start();
     let mut note = |lane: &str, wanted: &str| {
         running.wait(wanted, |news| {
@@ -287,8 +282,7 @@ fn checked_at(started_ms: &str) -> Station {
     good_passes(&mut running, "1");
     mock_fails(&mut running, "1");
     running.end();
-    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
-    database.execute(&format!("UPDATE run SET started_ms = {started_ms}"), []).unwrap();
+    station.change(&format!("UPDATE run SET started_ms = {started_ms}"));
     station
 }
 

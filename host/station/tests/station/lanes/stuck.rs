@@ -44,9 +44,8 @@ fn a_lane_whose_process_cannot_be_killed_is_out_though_its_result_was_not_saved(
     let stuck = Stuck::in_folder(&station.path(""));
     let settings = Settings::load(&path).unwrap();
     let store = Store::open(&Folder::new(&settings.data)).unwrap();
-    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
     let full = "CREATE TRIGGER full BEFORE UPDATE ON run BEGIN SELECT RAISE(ABORT, 'full'); END";
-    database.execute_batch(full).unwrap();
+    station.change(full);
     let engine = Engine::start(settings, store, stuck.program.clone()).unwrap();
     let news = engine.listen();
     let state = |word| {
@@ -61,7 +60,7 @@ fn a_lane_whose_process_cannot_be_killed_is_out_though_its_result_was_not_saved(
     state(Word::Ready);
     engine.label(1, Some(0), SERIALS[0], "weber", None);
     state(Word::Unsaved);
-    database.execute_batch("DROP TRIGGER full").unwrap();
+    station.change("DROP TRIGGER full");
     let settled = news.iter().find_map(|news| match news {
         News::Lane(lane) if lane.state != Word::Unsaved => Some(lane),
         _ => None,

@@ -46,12 +46,11 @@ fn assert_one_failed(station: &Station) {
 fn what_is_not_saved_is_tried_again_though_there_was_no_thread_for_it_once() {
     let station = Station::with(&["mock"], HOOK);
     let mut running = without_the_sixth(&station);
-    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
     let full = "CREATE TRIGGER full BEFORE UPDATE ON run BEGIN SELECT RAISE(ABORT, 'full'); END";
-    database.execute_batch(full).unwrap();
+    station.change(full);
     running.scan(SERIALS[2]);
     running.state("1", "UNSAVED");
-    database.execute_batch("DROP TRIGGER full").unwrap();
+    station.change("DROP TRIGGER full");
     running.state("1", "ERROR");
     running.end();
     assert_one_failed(&station);

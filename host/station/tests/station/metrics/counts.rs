@@ -70,8 +70,7 @@ fn a_day_without_another_run_is_not_looked_at_again() {
     made.run(&run("S2", "1", End::Fail(&[]), BEGIN_MS + DAY_MS));
     assert_eq!(counted(&tally, &made), ["final 1 FAIL 2"]);
     // The program never does this: a new count of these days finds no FAIL.
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
-    database.execute_batch("UPDATE run SET nth = 0").unwrap();
+    made.change("UPDATE run SET nth = 0");
     assert_eq!(counted(&Tally::new(true, 0), &made), ["final 1 PASS 2"]);
     assert_eq!(counted(&tally, &made), ["final 1 FAIL 2"]);
     made.run(&run("S3", "1", End::Fail(&[]), BEGIN_MS + DAY_MS + HOUR_MS));

@@ -141,12 +141,11 @@ fn boards_that_are_not_tested_because_of_the_station_are_counted() {
     let serving = station.serve();
     in_state(&serving, "1", "ready");
     assert_eq!(Figures::of(&serving).at("halfrow_refusals_total{reason=\"store\"}"), 0.0);
-    let database = rusqlite::Connection::open(station.path("data").join("station.db")).unwrap();
     let full = "CREATE TRIGGER no_run BEFORE INSERT ON run BEGIN SELECT RAISE(FAIL, 'the disk is full'); END";
-    database.execute_batch(full).unwrap();
+    station.change(full);
     scan(&serving, "1", SERIALS[0]);
     once(&serving, "halfrow_refusals_total{reason=\"store\"}", 1.0);
-    database.execute_batch(common::NO_AUDIT).unwrap();
+    station.change(common::NO_AUDIT);
     assert_eq!(serving.here().post("/scan", &[("text", SERIALS[0])]).send().status, 503);
     let figures = Figures::of(&serving);
     assert_eq!(figures.at("halfrow_refusals_total{reason=\"store\"}"), 2.0);

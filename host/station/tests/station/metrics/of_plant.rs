@@ -65,11 +65,11 @@ fn a_plant_whose_tables_a_newer_program_has_changed_meanwhile_is_not_read() {
     let (_folder, serving) = served(&server);
     let is_up = || Figures::of(&serving).at("halfrow_plant_up");
     assert_eq!(is_up(), 1.0);
-    server.client("plant").batch_execute("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
+    server.change("INSERT INTO schema_version VALUES (99, 'x', 1)");
     assert_eq!(is_up(), 0.0);
     let page = serving.here().get("/").send();
     assert!(page.status == 503 && page.text().contains("has version 99"), "{}", page.text());
-    server.client("plant").batch_execute("DELETE FROM schema_version WHERE n = 99").unwrap();
+    server.change("DELETE FROM schema_version WHERE n = 99");
     assert_eq!(is_up(), 1.0);
 }
 
@@ -148,8 +148,7 @@ fn the_pages_work_with_a_role_that_only_looks_and_no_machine_is_let_in_without_t
         .replace("\\password reader", "ALTER ROLE reader PASSWORD 'open sesame';");
     let of_audit = "GRANT INSERT ON audit TO reader;\n";
     assert!(grants.contains(of_audit), "{grants}");
-    let grant = |text: &str| server.client("plant").batch_execute(text).unwrap();
-    grant(&grants.replace(of_audit, ""));
+    server.change(&grants.replace(of_audit, ""));
     let folder = folder();
     let public =
         "public = \"https://station12.example\"\n[access]\nusers = \"users.toml\"\ntokens = \"tokens.toml\"";
@@ -163,7 +162,7 @@ fn the_pages_work_with_a_role_that_only_looks_and_no_machine_is_let_in_without_t
         request.with("authorization", &format!("Bearer {}", token.trim())).send().status
     };
     assert_eq!([ask("/history"), ask("/history")], [503, 503]);
-    grant(of_audit);
+    server.change(of_audit);
     for path in ["/", "/history", "/unit?serial=S1", "/yield", "/pareto", "/jobs", "/metrics"] {
         assert_eq!(ask(path), 200, "{path}");
     }

@@ -159,9 +159,8 @@ fn why_a_run_was_not_begun_stands_above_what_its_lane_owes() {
     let owed = "the good unit CA0131103628 must be judged PASS first";
     let before = seen(&serving, owed);
     assert!(before.contains("<p class=\"asks\">Scan its label</p>"), "{before}");
-    let database = rusqlite::Connection::open(station.path("data").join("station.db")).unwrap();
     let full = "CREATE TRIGGER full BEFORE INSERT ON run BEGIN SELECT RAISE(FAIL, 'the disk is full'); END";
-    database.execute_batch(full).unwrap();
+    station.change(full);
     serving.here().post("/scan", &[("text", SERIALS[0])]).until_taken();
     let page = seen(&serving, "the run was not begun");
     assert!(page.contains("lane out") && page.contains("the disk is full"), "{page}");

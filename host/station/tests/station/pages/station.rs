@@ -114,6 +114,11 @@ impl Station {
         command(&self.path("station.toml"))
     }
 
+    /// Changes the database without the program; returns how many rows the last statement changed.
+    pub(crate) fn change(&self, text: &str) -> usize {
+        common::change(&self.path("data"), text)
+    }
+
     /// Reads the database without the program.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
         common::query(&self.path("data"), text)

@@ -257,7 +257,7 @@ fn the_command_says_what_is_wrong_and_its_exit_code_does() {
     let expected = format!("{runs} runs and {runs} pieces of evidence were read, 0 faults found\n");
     assert_eq!((sound.code, sound.said, sound.complained.as_str()), (Some(0), expected, ""));
     let change = "UPDATE step SET detail = 'x' WHERE run_id = (SELECT min(id) FROM run) AND seq = 1";
-    server.client("plant").batch_execute(change).unwrap();
+    server.change(change);
     let run = server.rows("SELECT min(id) FROM run").remove(0).remove(0);
     let wrong = check(&[]);
     assert!(

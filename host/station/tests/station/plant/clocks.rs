@@ -38,7 +38,7 @@ fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
     // The control: clocks that agree.
     made.store.heard_plant(sink.beat(0, 0).unwrap().unwrap());
     made.run(&now_of("S1"));
-    server.client("plant").batch_execute(FAST).unwrap();
+    server.change(FAST);
     sink.rest();
     made.store.heard_plant(sink.beat(0, 0).unwrap().unwrap());
     let refused = begun(&mut made, "S2").unwrap_err();

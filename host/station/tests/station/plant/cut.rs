@@ -55,13 +55,12 @@ fn cut_at(numbers: impl IntoIterator<Item = usize>) {
 /// Deletes all that the plant has.
 fn empty(server: &Server) {
     let all = "TRUNCATE plan, unit, run, record, audit, station CASCADE";
-    server.client("plant").batch_execute(all).unwrap();
+    server.change(all);
 }
 
 /// Makes everything that waits for a later try due now.
 pub(super) fn due(made: &crate::history::made::Made) {
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
-    database.execute("UPDATE outbox SET next_ms = 0", []).unwrap();
+    made.change("UPDATE outbox SET next_ms = 0");
 }
 
 /// The server carries out the COMMIT, and has entered nothing in one of its tables.

@@ -76,7 +76,7 @@ fn a_plant_takes_so_many_runs_a_second_and_grows_by_so_much() {
 /// Runs this statement, and lists the sizes of the tables.
 fn vacuumed(server: &Server, how: &str) -> String {
     let begun = Instant::now();
-    server.client("plant").batch_execute(how).unwrap();
+    server.change(how);
     let mut told = format!("{how} in {:.0} s", begun.elapsed().as_secs_f64());
     let tables = "SELECT relname, n_live_tup, pg_total_relation_size(relid) FROM pg_stat_user_tables WHERE n_live_tup > 0 ORDER BY 3 DESC";
     for row in server.rows(tables) {

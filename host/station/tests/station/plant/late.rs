@@ -97,7 +97,7 @@ fn orders(count: u32) {
         let runs = drawn(&mut draw);
         let (expected, parcels) = (at_one(&runs), parcels(&runs));
         let order = if case == 0 { (0..runs.len()).rev().collect() } else { shuffled(&parcels, &mut draw) };
-        server.client("plant").batch_execute("TRUNCATE plan, unit, run, record CASCADE").unwrap();
+        server.change("TRUNCATE plan, unit, run, record CASCADE");
         let mut plant = Plant::connect(&server.address()).unwrap();
         for place in &order {
             plant.take(&parcels[*place]).unwrap();

@@ -90,7 +90,7 @@ fn this_computer() -> String {
 fn guarded() -> Server {
     let server = Server::start();
     let role = format!("CREATE ROLE halfrow LOGIN SUPERUSER PASSWORD '{PASSWORD}'");
-    server.client("plant").batch_execute(&role).unwrap();
+    server.change(&role);
     server.asks_for_a_password("halfrow");
     server
 }

@@ -135,7 +135,7 @@ fn the_pages_show_every_station_and_only_look() {
     // In all, 100 s and 121 s.
     for (ms, is_away) in [(100_000, false), (21_000, true)] {
         let silent = format!("UPDATE station SET seen_ms = seen_ms - {ms} WHERE name = 'station 8'");
-        server.client("plant").batch_execute(&silent).unwrap();
+        server.change(&silent);
         assert_eq!(text(&browser, "/").contains("not heard from"), is_away, "{ms}");
     }
     let listed = text(&browser, "/history");
@@ -171,7 +171,7 @@ fn a_version_of_which_runs_were_judged_by_different_plans_is_marked() {
     // As jobs bring them that were added and have no run.
     let plans = "INSERT INTO plan (sha256, name, version, product, text, first_used_ms)
         SELECT repeat(digit, 64), 'intake', '1', 'CAM-T', '', 0 FROM unnest(ARRAY['0', '1']) AS digit";
-    server.client("plant").batch_execute(plans).unwrap();
+    server.change(plans);
     let mark = "CAM-T intake 1 <span class=\"few\">different plans of this version";
     assert!(!text(&serving.here(), "/").contains(mark));
     for (digit, verdict, is_marked) in [('0', "PASS", false), ('1', "ERROR", false), ('1', "FAIL", true)] {
@@ -179,7 +179,7 @@ fn a_version_of_which_runs_were_judged_by_different_plans_is_marked() {
             "UPDATE run SET plan_sha256 = repeat('{digit}', 64)
              WHERE id = (SELECT max(id) FROM run WHERE verdict = '{verdict}')"
         );
-        server.client("plant").batch_execute(&judged).unwrap();
+        server.change(&judged);
         let page = text(&serving.here(), "/");
         assert_eq!(page.contains(mark), is_marked, "{verdict}: {page}");
     }

@@ -174,7 +174,7 @@ fn a_plan_comes_to_the_station_with_its_files_and_an_older_one_can_hold_again() 
 fn an_empty_database_is_prepared_by_the_settings_of_a_station_with_plans_of_the_plant() {
     let made = Published::new();
     let empty = "DROP SCHEMA public CASCADE; CREATE SCHEMA public";
-    made.server.client("plant").batch_execute(empty).unwrap();
+    made.server.change(empty);
     assert!(made.fetch().complained.contains("plant prepare"));
     let prepared = made.did(&["plant", "prepare"]);
     assert_eq!(prepared.code, Some(0), "{prepared:?}");
@@ -198,27 +198,26 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
         assert_eq!(made.held(), ("1".to_owned(), 1));
     };
     refused("is not signed by a key of `trusts`");
-    let change = |text: &str| made.server.client("plant").batch_execute(text).unwrap();
-    change(
+    made.server.change(
         "UPDATE publication SET signature = (SELECT signature FROM publication WHERE number = 1) WHERE number = 2",
     );
     refused("is not signed by a key of `trusts`");
-    change(
+    made.server.change(
         "UPDATE publication SET statement = (SELECT replace(statement, '\"number\":1', '\"number\":2') FROM publication WHERE number = 1)
          WHERE number = 2",
     );
     refused("is not signed by a key of `trusts`");
-    change("DELETE FROM publication WHERE number = 2");
+    made.server.change("DELETE FROM publication WHERE number = 2");
     assert_eq!(made.publish("engel.key").said, "CAM-T/quick 2 holds, as number 2\n");
-    change("UPDATE bundle SET text = replace(text, 'timeout = 60', 'timeout = 61')");
+    made.server.change("UPDATE bundle SET text = replace(text, 'timeout = 60', 'timeout = 61')");
     refused("has the hash");
-    change("UPDATE bundle SET text = 'nothing'");
+    made.server.change("UPDATE bundle SET text = 'nothing'");
     refused("is not a plan");
     // A statement that was valid once is refused after a later one.
     made.plan("3", 3);
     made.publish("engel.key");
     assert_eq!(made.fetch().said, format!("CAM-T/quick 3, number 3, {IS_NEW}\n"));
-    change("DELETE FROM publication WHERE number > 1");
+    made.server.change("DELETE FROM publication WHERE number > 1");
     let older = made.fetch();
     assert!(older.complained.contains("as its number 1, and here is number 3 already"), "{older:?}");
     assert_eq!(made.held(), ("3".to_owned(), 3));
@@ -233,7 +232,7 @@ fn a_plan_holds_again_once_it_was_published_as_often_as_numbers_are_missing() {
         made.publish("engel.key");
     }
     made.fetch();
-    made.server.client("plant").batch_execute("DELETE FROM publication WHERE number > 1").unwrap();
+    made.server.change("DELETE FROM publication WHERE number > 1");
     made.plan("1", 1);
     for number in 2..=4 {
         let refused = made.fetch();
@@ -249,7 +248,7 @@ fn another_plan_under_the_number_that_a_station_has_is_not_taken() {
     let made = Published::new();
     made.publish("engel.key");
     made.fetch();
-    made.server.client("plant").batch_execute("DELETE FROM publication").unwrap();
+    made.server.change("DELETE FROM publication");
     made.plan("2", 2);
     assert_eq!(made.publish("engel.key").said, "CAM-T/quick 2 holds, as number 1\n");
     let other = made.fetch();
@@ -261,18 +260,17 @@ fn another_plan_under_the_number_that_a_station_has_is_not_taken() {
 #[test]
 fn an_older_plan_holds_again_as_it_was_signed_or_not_at_all() {
     let made = Published::new();
-    let change = |text: &str| made.server.client("plant").batch_execute(text).unwrap();
     // Another plan of the same name and version is in the database.
     made.did(&["plan", "key", &made.path("other.key")]);
     made.plan("1", 9);
     made.publish("other.key");
-    change("DELETE FROM publication");
+    made.server.change("DELETE FROM publication");
     let other = made.server.rows("SELECT sha256 FROM bundle")[0][0].clone();
     made.plan("1", 1);
     made.publish("engel.key");
     made.plan("2", 2);
     made.publish("engel.key");
-    change(&format!("UPDATE publication SET sha256 = '{other}' WHERE version = '1'"));
+    made.server.change(&format!("UPDATE publication SET sha256 = '{other}' WHERE version = '1'"));
     assert_eq!(made.back("1").said, "CAM-T/quick 1 holds, as number 3\n");
     made.fetch();
     assert_eq!(made.held(), ("1".to_owned(), 1), "what was signed");
@@ -280,15 +278,15 @@ fn an_older_plan_holds_again_as_it_was_signed_or_not_at_all() {
         let back = made.back("1");
         assert!(back.code == Some(3) && back.complained.contains(expected), "{expected}: {back:?}");
     };
-    change(&format!(
+    made.server.change(&format!(
         "UPDATE bundle SET text = replace(text, 'timeout = 60', 'timeout = 61') WHERE sha256 <> '{other}'"
     ));
     refused("has the hash");
-    change(&format!(
+    made.server.change(&format!(
         "UPDATE publication SET statement = regexp_replace(statement, '\"sha256\":\"[0-9a-f]*\"', '\"sha256\":\"{other}\"') WHERE version = '1'"
     ));
     refused("is signed neither by this key nor");
-    change(
+    made.server.change(
         "UPDATE publication SET statement = two.statement, signature = two.signature FROM publication two
             WHERE publication.version = '1' AND two.version = '2'",
     );
@@ -300,8 +298,7 @@ fn an_older_plan_holds_again_as_it_was_signed_or_not_at_all() {
 fn a_plan_gets_no_number_that_nobody_signed_who_is_trusted() {
     let made = Published::new();
     made.publish("engel.key");
-    let change = |text: &str| made.server.client("plant").batch_execute(text).unwrap();
-    change(
+    made.server.change(
         "UPDATE publication SET statement = replace(statement, '\"number\":1', '\"number\":9223372036854775807')",
     );
     made.plan("2", 2);
@@ -313,7 +310,7 @@ fn a_plan_gets_no_number_that_nobody_signed_who_is_trusted() {
         );
     };
     refused();
-    change("DELETE FROM publication");
+    made.server.change("DELETE FROM publication");
     made.did(&["plan", "key", &made.path("other.key")]);
     made.publish("other.key");
     made.plan("3", 3);

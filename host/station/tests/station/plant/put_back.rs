@@ -10,7 +10,7 @@ use super::sent::{forget, send};
 use super::server::Server;
 use super::tables::is_as;
 use super::waiting::{await_sent, station};
-use crate::common::{NO_AUDIT, SERIALS, logged, query};
+use crate::common::{NO_AUDIT, SERIALS, change, logged, query};
 use crate::history::made::{End, Made, Run};
 use crate::history::released::history;
 use crate::jobs::{add, board, worker};
@@ -27,7 +27,7 @@ fn emptied(server: &Server) {
 fn a_record_that_the_plant_has_lost_comes_again_with_its_run() {
     let server = Server::prepared();
     let (made, _) = send(history(), server.address());
-    server.client("plant").batch_execute("DELETE FROM record").unwrap();
+    server.change("DELETE FROM record");
     forget(&made);
     let (made, all) = send(made, server.address());
     assert_eq!((all.sent, all.failed), (10, 0));
@@ -52,11 +52,9 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     drop(store);
     let again = ["outbox", "again", "plant", "--reason", "its disk broke", "--operator", "engel"];
     // What cannot be entered in the audit is not done, and neither is anything for a sink that does not exist.
-    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
-    database.execute_batch(NO_AUDIT).unwrap();
+    change(folder.path(), NO_AUDIT);
     assert_eq!(did(folder.path(), &server, &again).code, Some(3));
-    database.execute_batch("DROP TRIGGER full").unwrap();
-    drop(database);
+    change(folder.path(), "DROP TRIGGER full");
     let unknown = did(
         folder.path(),
         &server,
@@ -161,16 +159,14 @@ fn runs_that_a_waiver_or_a_rebinding_misses_at_the_plant_are_sent_again() {
         emptied(&server);
         let mut missed = query(made.as_ref(), missed);
         assert!(!missed.is_empty());
-        let database = rusqlite::Connection::open(made.folder().database()).unwrap();
         let newest = query(made.as_ref(), "SELECT max(subject) FROM outbox WHERE kind = 'run'").remove(0);
         made = sent_alone(made, &newest, &server);
         missed.push(newest);
         missed.sort();
         missed.dedup();
-        database.execute("UPDATE outbox SET done_ms = 1, dead_ms = NULL", []).unwrap();
+        made.change("UPDATE outbox SET done_ms = 1, dead_ms = NULL");
         let unsent = format!("UPDATE outbox SET done_ms = NULL, next_ms = 0 WHERE {entry}");
-        assert_eq!(database.execute(&unsent, []).unwrap(), 1);
-        drop(database);
+        assert_eq!(made.change(&unsent), 1);
         let all;
         (made, all) = send(made, server.address());
         assert_eq!((all.sent, all.failed), (0, 1));

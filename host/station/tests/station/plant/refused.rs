@@ -9,7 +9,7 @@ use super::cut::due;
 use super::sent::{send, sink};
 use super::server::Server;
 use super::tables::is_as;
-use crate::common::{Did, LANE, NO_AUDIT, did_in, plant_settings, query, settings};
+use crate::common::{Did, LANE, NO_AUDIT, change, did_in, plant_settings, query, settings};
 use crate::history::made::{End, Made, Run};
 use crate::history::released::history;
 
@@ -25,10 +25,9 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     let (made, _) = send(history(), server.address());
     // A record was changed at the plant, and the station does not know that it had sent it.
     let changed = "UPDATE run SET record_sha256 = repeat('0', 64) WHERE id = (SELECT min(id) FROM run)";
-    server.client("plant").batch_execute(changed).unwrap();
+    server.change(changed);
     let run = query(made.as_ref(), "SELECT min(id) FROM run").remove(0);
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
-    database.execute("UPDATE outbox SET done_ms = NULL", []).unwrap();
+    made.change("UPDATE outbox SET done_ms = NULL");
     let (made, all) = send(made, server.address());
     // All the others are sent.
     assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
@@ -44,7 +43,7 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     // A person looks into it, corrects the plant, and releases the entry.
     let ours = query(made.as_ref(), &format!("SELECT record_sha256 FROM run WHERE id = '{run}'")).remove(0);
     let right = format!("UPDATE run SET record_sha256 = '{ours}' WHERE id = '{run}'");
-    server.client("plant").batch_execute(&right).unwrap();
+    server.change(&right);
     let release =
         ["outbox", "release", run.as_str(), "--reason", "it was changed by hand", "--operator", "engel"];
     let busy = did(made.as_ref(), &server, &release);
@@ -52,10 +51,10 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     let (folder, store) = made.parts();
     drop(store);
     // What cannot be entered in the audit is not released.
-    database.execute_batch(NO_AUDIT).unwrap();
+    change(folder.path(), NO_AUDIT);
     let unnoted = did(folder.path(), &server, &release);
     assert_eq!(unnoted.code, Some(3), "{unnoted:?}");
-    database.execute_batch("DROP TRIGGER full").unwrap();
+    change(folder.path(), "DROP TRIGGER full");
     let released = did(folder.path(), &server, &release);
     assert_eq!((released.code, released.complained.as_str()), (Some(0), ""), "{released:?}");
     let again = did(folder.path(), &server, &release);
@@ -75,10 +74,9 @@ fn waits_for_what_comes_first(subjects: &str, said: &str) -> usize {
     let server = Server::prepared();
     let mut made = history();
     made.store.sends_to(vec!["plant".to_owned()]).unwrap();
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     let later =
         format!("UPDATE outbox SET next_ms = (unixepoch() + 240) * 1000 WHERE subject IN ({subjects})");
-    let first = database.execute(&later, []).unwrap();
+    let first = made.change(&later);
     let (made, _) = send(made, server.address());
     let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
     assert_eq!((unsent.entries as usize, unsent.dead), (first + 1, 0), "{unsent:?}");
@@ -113,7 +111,7 @@ fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
     assert_eq!(prepared.said, format!("the plant {} has version 8\n", server.url()));
     let (_, all) = send(Made::at(folder), server.address());
     assert_eq!((all.sent, all.failed), (10, 0));
-    server.client("plant").batch_execute("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
+    server.change("INSERT INTO schema_version VALUES (99, 'x', 1)");
     let newer = refused(&server);
     assert!(matches!(newer, StoreError::Newer { found: 99, .. }), "{newer:?}");
     let newer = Plant::prepare(&server.address()).unwrap_err();
@@ -157,10 +155,10 @@ fn a_plant_that_went_back_is_brought_up_to_date_beside_the_copy_of_the_first_tim
     older(&server);
     assert_eq!(Plant::prepare(&server.address()).unwrap(), 8);
     for copy in ["before_3_2", "before_3_3"] {
-        server.client("plant").batch_execute("DROP SCHEMA public CASCADE; CREATE SCHEMA public").unwrap();
+        server.change("DROP SCHEMA public CASCADE; CREATE SCHEMA public");
         older(&server);
         let changed = format!("UPDATE unit SET serial = '{copy}'");
-        server.client("plant").batch_execute(&changed).unwrap();
+        server.change(&changed);
         assert_eq!(Plant::prepare(&server.address()).unwrap(), 8);
         assert_eq!(server.rows(&format!("SELECT serial FROM {copy}.unit")), [[copy]]);
     }
@@ -175,7 +173,7 @@ fn a_plant_is_brought_up_to_date_after_what_an_earlier_program_has_under_way() {
     older(&server);
     let mut busy = server.client("plant");
     busy.batch_execute("BEGIN; SELECT max(n) FROM schema_version").unwrap();
-    server.client("plant").batch_execute("ALTER DATABASE plant SET lock_timeout = 100").unwrap();
+    server.change("ALTER DATABASE plant SET lock_timeout = 100");
     let waits = Plant::prepare(&server.address()).unwrap_err();
     let PlantError::Store(StoreError::Plant { source, .. }) = &waits else { panic!("{waits:?}") };
     assert!(format!("{source:?}").contains("lock timeout"), "{source:?}");

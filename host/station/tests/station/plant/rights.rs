@@ -18,7 +18,7 @@ use crate::metrics::of_plant::block;
 /// The address of the plant for stations, with a role that is made as docs/plant.md says.
 pub(super) fn as_station(server: &Server) -> String {
     let grants = block("sql", "CREATE ROLE station").replace("\\password station\n", "");
-    server.client("plant").batch_execute(&grants).unwrap();
+    server.change(&grants);
     server.url().replace("postgres@", "station@")
 }
 
@@ -41,7 +41,7 @@ fn no_station_changes_or_removes_what_was_said_and_done() {
         for text in [change, format!("DELETE FROM {table}"), format!("TRUNCATE {table}")] {
             // The control: its owner may.
             if !text.starts_with("TRUNCATE") {
-                server.client("plant").batch_execute(&format!("BEGIN; {text}; ROLLBACK")).unwrap();
+                server.change(&format!("BEGIN; {text}; ROLLBACK"));
             }
             let refused = station.batch_execute(&text).unwrap_err();
             let code = refused.code().map(|code| code.code().to_owned());

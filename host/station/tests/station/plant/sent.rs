@@ -45,19 +45,17 @@ pub(crate) fn introduction(name: &str, origin: String) -> Introduction {
 
 /// Makes the station forget what it has sent.
 pub(super) fn forget(made: &Made) {
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
-    assert!(database.execute("DELETE FROM outbox", []).unwrap() > 0);
+    assert!(made.change("DELETE FROM outbox") > 0);
 }
 
 #[test]
 fn all_that_a_station_keeps_comes_to_the_plant_once() {
     let server = Server::prepared();
     let address = PlantAddress::new(&as_station(&server), None, None).unwrap();
-    let does = |text: &str| server.client("plant").batch_execute(text).unwrap();
-    does("REVOKE USAGE ON SCHEMA public FROM PUBLIC, station");
+    server.change("REVOKE USAGE ON SCHEMA public FROM PUBLIC, station");
     let shut = anyhow::Error::from(Plant::connect(&address).unwrap_err());
     assert!(format!("{shut:#}").contains("grant it USAGE on the schema"), "{shut:#}");
-    does("GRANT USAGE ON SCHEMA public TO station");
+    server.change("GRANT USAGE ON SCHEMA public TO station");
     let (made, all) = send(history(), address);
     // Seven runs, a waiver with its line in the audit, and a rebinding.
     assert_eq!(all, Round { sent: 10, failed: 0, is_away: false });

@@ -59,7 +59,7 @@ impl Server {
                 $$ BEGIN RAISE EXCEPTION 'no such character' USING ERRCODE = '22021'; END $$;
             CREATE TRIGGER never BEFORE INSERT ON {table} FOR EACH ROW EXECUTE FUNCTION never()"
         );
-        self.client("plant").batch_execute(&never).unwrap();
+        self.change(&never);
     }
 
     /// From now on the plant loses every new row of `table`, and says that it has entered it.
@@ -68,13 +68,13 @@ impl Server {
             "CREATE FUNCTION lost() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RETURN NULL; END $$;
             CREATE TRIGGER lost BEFORE INSERT ON {table} FOR EACH ROW EXECUTE FUNCTION lost()"
         );
-        self.client("plant").batch_execute(&loses).unwrap();
+        self.change(&loses);
     }
 
     /// Ends [`Self::loses`].
     pub(crate) fn loses_nothing(&self, table: &str) {
         let ends = format!("DROP TRIGGER lost ON {table}; DROP FUNCTION lost");
-        self.client("plant").batch_execute(&ends).unwrap();
+        self.change(&ends);
     }
 
     pub(crate) fn data(&self) -> PathBuf {
@@ -226,6 +226,11 @@ impl Server {
     fn connected(&self, database: &str) -> Result<Client, postgres::Error> {
         let text = format!("host=127.0.0.1 port={} user=postgres dbname={database}", self.port);
         Client::connect(&text, NoTls)
+    }
+
+    /// Changes the plant without the program.
+    pub(crate) fn change(&self, text: &str) {
+        self.client("plant").batch_execute(text).unwrap();
     }
 
     /// All rows that `text` selects, each value as text.

@@ -67,6 +67,11 @@ impl Station {
         common::check(&self.data())
     }
 
+    /// Changes the database without the program; returns how many rows the last statement changed.
+    pub(crate) fn change(&self, text: &str) -> usize {
+        common::change(&self.data(), text)
+    }
+
     /// Reads the database without the program: the first value of each row.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
         common::query(&self.data(), text)

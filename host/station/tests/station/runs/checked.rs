@@ -90,8 +90,7 @@ fn a_changed_row_is_found_in_every_table() {
         ("INSERT INTO unit VALUES ('017f22e2-79b0-7cc3-98c4-dc0c0c07398f', 'CAM-T', 'CAT77777', 1)", "unit"),
     ] {
         let station = station();
-        let database = rusqlite::Connection::open(station.store().database()).unwrap();
-        assert!(database.execute(change, []).unwrap() > 0, "{change}");
+        assert!(station.change(change) > 0, "{change}");
         let did = station.check();
         assert_eq!(did.code, Some(3), "{change}: {did:?}");
         assert!(did.said.contains(&format!("fault: table {table}")), "{change}: {did:?}");
@@ -116,8 +115,7 @@ fn what_may_only_follow_from_a_record_that_cannot_be_read_is_told_as_that() {
     // The control: of these, neither follows from a record.
     let attached = station.query("SELECT sha256 FROM attachment").remove(0);
     fs::remove_file(station.store().blobs().path(&attached)).unwrap();
-    let database = rusqlite::Connection::open(station.store().database()).unwrap();
-    database.execute("UPDATE day_count SET passed = passed + 1", []).unwrap();
+    station.change("UPDATE day_count SET passed = passed + 1");
     let did = lines(&station.check());
     assert!(did[0].starts_with("fault: evidence of run ") && did[1].starts_with("fault: table "), "{did:?}");
     assert!(!did.iter().any(|line| line.starts_with("note: ")), "{did:?}");
@@ -145,9 +143,7 @@ fn a_waiver_that_was_changed_moved_or_removed_is_found() {
         "DELETE FROM audit WHERE act = 'waive'".to_owned(),
     ] {
         fs::copy(&copy, station.store().database()).unwrap();
-        let database = rusqlite::Connection::open(station.store().database()).unwrap();
-        assert!(database.execute(&change, []).unwrap() > 0, "{change}");
-        drop(database);
+        assert!(station.change(&change) > 0, "{change}");
         let did = station.check();
         assert_eq!(did.code, Some(3), "{change}: {did:?}");
         assert!(did.said.contains(&format!("the waiver of run {failed} is not as the audit")), "{did:?}");

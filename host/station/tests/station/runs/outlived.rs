@@ -7,7 +7,7 @@ use std::process::{Child, Command};
 use halfrow_station::store::Folder;
 
 use super::bench::PLAN;
-use crate::common::{query, until};
+use crate::common::{change, query, until};
 use crate::history::commands::did;
 use crate::history::made::{End, Made, Run};
 use crate::history::served::Served;
@@ -90,9 +90,7 @@ ctypes.CDLL(None).pthread_exit(None)";
 fn the_board_of_a_process_that_outlived_its_station_is_out_in_whichever_lane_it_is() {
     let mut made = Made::new();
     let _outlived = Outlived::of(&mut made, "another");
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
-    database.execute("UPDATE run SET target = 'mock'", []).unwrap();
-    drop(database);
+    made.change("UPDATE run SET target = 'mock'");
     is_out(made);
 }
 
@@ -150,16 +148,14 @@ fn a_run_that_was_closed_is_told_though_another_cannot_be_closed() {
     let mut made = Made::new();
     let _outlived = Outlived::of(&mut made, "1");
     made.begin(&Run { lane: "2".to_owned(), ..Run::of("CAT00002", End::Open) });
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     let refuses = "CREATE TRIGGER refuses BEFORE UPDATE ON run WHEN OLD.lane = '2'
         BEGIN SELECT RAISE(ABORT, 'not this one'); END";
-    database.execute_batch(refuses).unwrap();
+    made.change(refuses);
     let data = made.closed();
     let (code, complained) = run(&data, "3");
     assert_eq!(code, 3, "{complained}");
     assert!(complained.contains("of CAT00001 was found open, and is ERROR"), "{complained}");
     assert!(complained.contains("not this one"), "{complained}");
-    database.execute_batch("DROP TRIGGER refuses").unwrap();
-    drop(database);
+    change(data.path(), "DROP TRIGGER refuses");
     is_out(Made::at(data));
 }

@@ -8,6 +8,7 @@ use halfrow_station::record::{BoardSeen, RunCause, StepOutcome};
 use halfrow_station::run::{RunError, recover};
 
 use super::bench::PLAN;
+use crate::common::query;
 use crate::history::made::{End, Made, Run, step};
 
 const SHIFT: &str = "[shift]\ngood = \"CAT90001\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]";
@@ -103,12 +104,11 @@ fn a_spool_of_which_all_was_read_in_the_end_does_not_stay() {
     let spool = made.folder().spool(&made.begin(&Run::of("CAT00001", End::Open)).0.id);
     let log = spool.join("lane.log");
     std::fs::create_dir_all(&log).unwrap();
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     let full = "CREATE TRIGGER full BEFORE UPDATE ON run BEGIN SELECT RAISE(ABORT, 'full'); END";
-    database.execute_batch(full).unwrap();
+    made.change(full);
     assert!(recover(&mut made.store).unwrap().unclosed.is_some());
     assert!(spool.join("unread").exists(), "the control");
-    database.execute_batch("DROP TRIGGER full").unwrap();
+    made.change("DROP TRIGGER full");
     std::fs::remove_dir(&log).unwrap();
     std::fs::write(&log, "what was logged\n").unwrap();
     let recovered = recover(&mut made.store).unwrap().closed;
@@ -122,15 +122,13 @@ fn a_run_that_cannot_be_closed_keeps_no_other_open() {
     for (lane, serial) in [("1", "CAT00001"), ("2", "CAT00002")] {
         made.begin(&Run { lane: lane.to_owned(), ..Run::of(serial, End::Open) });
     }
-    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     let refuses = "CREATE TRIGGER refuses BEFORE UPDATE ON run WHEN OLD.lane = '1'
         BEGIN SELECT RAISE(ABORT, 'not this one'); END";
-    database.execute_batch(refuses).unwrap();
+    made.change(refuses);
     let refused = recover(&mut made.store).unwrap().unclosed.unwrap();
     assert!(matches!(refused, RunError::Unsaved { .. }), "{refused:?}");
-    let open = "SELECT group_concat(lane) FROM run WHERE state = 'open'";
-    assert_eq!(database.query_row(open, [], |row| row.get::<_, String>(0)).unwrap(), "1");
-    database.execute_batch("DROP TRIGGER refuses").unwrap();
+    assert_eq!(query(made.as_ref(), "SELECT lane FROM run WHERE state = 'open'"), ["1"]);
+    made.change("DROP TRIGGER refuses");
     assert_eq!(recover(&mut made.store).unwrap().closed.len(), 1);
 }
 

@@ -12,7 +12,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::send;
-use crate::common::{Killed, listening, now_ms, query, reason};
+use crate::common::{Killed, change, listening, now_ms, query, reason};
 use crate::history::made::{End, Made, Run};
 use crate::plant::link::certificates;
 
@@ -181,14 +181,9 @@ fn an_event_that_is_too_long_for_a_broker_keeps_no_other_one_waiting() {
     let broker = Broker::with(None, "max_packet_size 20000\n");
     let folder = station();
     // The waiver is the first that is sent.
-    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
-    database.execute("UPDATE waiver SET id = '00' || substr(id, 3)", []).unwrap();
-    database
-        .execute("UPDATE outbox SET subject = '00' || substr(subject, 3) WHERE kind = 'waiver'", [])
-        .unwrap();
-    let waiver: String = database.query_row("SELECT id FROM waiver", [], |row| row.get(0)).unwrap();
-    assert!(waiver.starts_with("00"));
-    drop(database);
+    change(folder.path(), "UPDATE waiver SET id = '00' || substr(id, 3)");
+    change(folder.path(), "UPDATE outbox SET subject = '00' || substr(subject, 3) WHERE kind = 'waiver'");
+    assert!(query(folder.path(), "SELECT id FROM waiver")[0].starts_with("00"));
     let sent = send(folder.path(), &broker.sink(folder.path(), "mqtt", PASSWORD, ""));
     assert!(sent.said.starts_with("3 sent, 1 not"), "{sent:?}");
     assert!(sent.said.contains("ended the connection over an event of 200"), "{sent:?}");

@@ -9,7 +9,7 @@ use std::time::{Duration, SystemTime};
 use halfrow_station::store::Folder;
 
 use super::{SEND, did, send, settings};
-use crate::common::{Did, NO_AUDIT, program, query};
+use crate::common::{Did, NO_AUDIT, change, program, query};
 use crate::history::made::Made;
 use crate::history::released::history;
 
@@ -160,9 +160,7 @@ fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() 
     assert_eq!(did(folder.path(), &sink, &release).code, Some(2));
     assert!(send(folder.path(), &sink).said.contains(" sent, 0 not"));
     // A file that exists with the same content is not written again.
-    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
-    database.execute("DELETE FROM outbox", []).unwrap();
-    drop(database);
+    change(folder.path(), "DELETE FROM outbox");
     let modified = fs::metadata(&other).unwrap().modified().unwrap();
     let trace = folder.path().join("trace");
     let mut again = Command::new("strace");
@@ -210,11 +208,9 @@ fn a_sink_that_is_no_more_is_forgotten_when_the_settings_do_not_name_it() {
     let unknown = did(folder.path(), "", &forget.map(|word| if word == "share" { "shore" } else { word }));
     assert!(unknown.code == Some(2) && unknown.complained.contains("no sink shore"), "{unknown:?}");
     // What cannot be entered in the audit is not forgotten.
-    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
-    database.execute_batch(NO_AUDIT).unwrap();
+    change(folder.path(), NO_AUDIT);
     assert_eq!(did(folder.path(), "", &forget).code, Some(3));
-    database.execute_batch("DROP TRIGGER full").unwrap();
-    drop(database);
+    change(folder.path(), "DROP TRIGGER full");
     let forgotten = did(folder.path(), "", &forget);
     assert_eq!((forgotten.code, forgotten.said.as_str()), (Some(0), "10 of share are forgotten\n"));
     assert_eq!(did(folder.path(), "", &["outbox", "list"]).said, "nothing is left to be sent\n");
