@@ -3,6 +3,8 @@
 use halfrow_frames::{DecodeError, Orientation, PictureSize, ReadOptions, decode, dng};
 use halfrow_model::{BitDepth, Frame, Phase};
 
+use super::pictures::hex;
+
 /// 4 x 2 of [`SAMPLES`], BGGR, white at 4095, low byte first.
 const LITTLE: &str = "\
     49492a0018000000000001000001ff0ffe0f0008110003000d000001040001000000040000000101030001000000020000000201\
@@ -28,11 +30,6 @@ const WHITE: usize = 26 + 12 * 12;
 
 const AS_WRITTEN: ReadOptions =
     ReadOptions { depth: BitDepth::Twelve, phase: Phase::Bggr, raw: None, size: PictureSize::Any };
-
-fn hex(text: &str) -> Vec<u8> {
-    let digits: Vec<u32> = text.chars().filter_map(|digit| digit.to_digit(16)).collect();
-    digits.chunks(2).map(|pair| u8::try_from(pair[0] * 16 + pair[1]).unwrap()).collect()
-}
 
 /// [`LITTLE`] with other bytes at one place.
 fn altered(place: usize, bytes: &[u8]) -> Vec<u8> {

@@ -48,7 +48,8 @@ const TIFF_RGB8: &str = "49492a002900000078dae31291d330b2710b884ac9ab68ea99b660d
 
 const GREY: [u16; 8] = [0, 1, 256, 4095, 4094, 2048, 17, 3];
 
-fn hex(text: &str) -> Vec<u8> {
+/// The bytes that these hexadecimal digits stand for.
+pub(super) fn hex(text: &str) -> Vec<u8> {
     let digits: Vec<u32> = text.chars().filter_map(|digit| digit.to_digit(16)).collect();
     digits.chunks(2).map(|pair| u8::try_from(pair[0] * 16 + pair[1]).unwrap()).collect()
 }
