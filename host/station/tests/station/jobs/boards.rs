@@ -1,7 +1,7 @@
 //! Boards that are waited for, held and lost.
 
 use std::io::{BufRead as _, BufReader, Lines};
-use std::process::{ChildStdin, ChildStdout, Stdio};
+use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::thread;
 
 use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{add, board, run_out, settings, shared, with_a_job, worker};
 use crate::clocks::Clocks;
-use crate::common::{Killed, command, did_in, engel, now_ms, program, reason, until};
+use crate::common::{Killed, did_in, engel, now_ms, program, reason, until};
 use crate::plant::server::Server;
 
 fn waiter(name: &str) -> Waiter {

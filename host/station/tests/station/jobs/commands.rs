@@ -1,6 +1,7 @@
 //! Jobs and shared boards by the commands of a station's program, and a station that takes no jobs.
 
 use std::fs::{self, File};
+use std::process::Command;
 
 use serde_json::Value;
 

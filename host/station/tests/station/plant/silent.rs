@@ -16,7 +16,7 @@ use nix::sys::signal::Signal;
 
 use super::sent::sink;
 use super::server::Server;
-use crate::common::{Killed, command, folder, now_ms, program, signal, until, until_found};
+use crate::common::{Killed, command, folder, now_ms, signal, until, until_found};
 use crate::history::made::{End, Made, Run};
 use crate::jobs::{settings_of, shared};
 
