@@ -39,6 +39,7 @@ pub mod outbox;
 pub mod plan;
 mod presence;
 mod process_group;
+pub mod progress;
 pub mod published;
 pub mod record;
 pub mod run;

@@ -14,6 +14,7 @@ pub use plant::check_plant;
 pub use superseded::Superseded;
 
 use crate::plan::plan_hash;
+use crate::progress::{Progress, Told};
 use crate::published::KeptPlans;
 use crate::record::{Blobs, Piece, PlanRecord, Record, UnnamedRecord};
 use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Snapshot, StoreError, TABLES};
@@ -37,18 +38,22 @@ pub struct Checked {
     pub faults: Vec<Fault>,
 }
 
-/// Checks everything that the station in `folder` has kept. Nothing is changed; runs may go on meanwhile.
+/// What is counted while records are read.
+const RUNS_READ: &str = "runs read";
+
+/// Checks everything that the station in `folder` has kept. Nothing is changed; runs may go on meanwhile. `told` is called for each
+/// run that is read.
 ///
 /// # Errors
 /// [`StoreError`] when the database cannot be read at all.
-pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
+pub fn check(folder: &Folder, told: Told<'_>) -> Result<Checked, StoreError> {
     // Listed before the snapshot, because a run has a row before it has a record.
     let pieces = folder.blobs().all()?;
     let snapshot = Snapshot::take(folder)?;
     let faults: Vec<_> = snapshot.damage()?.into_iter().map(|said| Fault::Database { said }).collect();
     let is_damaged = !faults.is_empty();
     let mut checked = Checked { faults, ..Checked::default() };
-    unless_damaged(is_damaged, at_runs(folder, &snapshot, is_damaged, &mut checked))?;
+    unless_damaged(is_damaged, at_runs(folder, &snapshot, &mut checked, told))?;
     unless_damaged(is_damaged, at_waivers(&snapshot, &mut checked))?;
     unless_damaged(is_damaged, at_unnamed(folder, &pieces, &snapshot, &mut checked))?;
     checked.faults.extend(foreign(folder)?);
@@ -71,15 +76,16 @@ fn unless_damaged(is_damaged: bool, looked: Result<(), StoreError>) -> Result<()
 fn at_runs(
     folder: &Folder,
     snapshot: &Snapshot,
-    is_damaged: bool,
     checked: &mut Checked,
+    told: Told<'_>,
 ) -> Result<(), StoreError> {
+    let is_damaged = !checked.faults.is_empty();
     let (finals, open) = (snapshot.final_runs()?, snapshot.open_runs()?);
     let rebindings = snapshot.rebindings()?;
     let (blobs, removed, rebuilt) = (folder.blobs(), snapshot.pruned()?, Rebuilt::new()?);
     (checked.runs, checked.open) = (finals.len(), open.len());
     let mut look = Look { blobs, removed, rebuilt, early: Vec::new(), checked };
-    look.at_all(&finals, &open, &rebindings);
+    look.at_all(&finals, &open, &rebindings, told);
     let Look { mut rebuilt, checked, .. } = look;
     for (table, key) in TABLES {
         let (stored, rebuilt) = (snapshot.table(table, key), rebuilt.table(table, key));
@@ -148,19 +154,27 @@ struct Look<'a> {
 
 impl Look<'_> {
     /// Goes through runs and changed bindings in the order in which they began, which is that of their ids.
-    fn at_all(&mut self, finals: &[(String, String)], open: &[OpenRun], rebindings: &[Rebinding]) {
+    fn at_all(
+        &mut self,
+        finals: &[(String, String)],
+        open: &[OpenRun],
+        rebindings: &[Rebinding],
+        told: Told<'_>,
+    ) {
         let finals = finals.iter().map(|(run, hash)| (run, Entry::Final { run, hash }));
         let open = open.iter().map(|open| (&open.run.id, Entry::Open(open)));
         let rebindings = rebindings.iter().map(|change| (&change.id, Entry::Rebinding(change)));
         let mut all: Vec<_> = finals.chain(open).chain(rebindings).collect();
         all.sort_by_key(|(id, _)| *id);
-        for (_, entry) in all {
-            let done = match entry {
+        let of = Some(all.len());
+        for ((_, entry), done) in all.into_iter().zip(1..) {
+            told(Progress { what: RUNS_READ, done, of });
+            let looked_at = match entry {
                 Entry::Final { run, hash } => self.at_final(run, hash),
                 Entry::Open(open) => self.at_open(open),
                 Entry::Rebinding(change) => self.at_rebinding(change),
             };
-            let fault = done.err();
+            let fault = looked_at.err();
             self.checked.unread +=
                 usize::from(matches!(fault, Some(Fault::Evidence { .. } | Fault::Record { .. })));
             self.checked.faults.extend(fault);

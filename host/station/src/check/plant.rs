@@ -6,7 +6,8 @@ use halfrow::Verdict;
 use halfrow::result::sha256;
 
 use super::compare::compare;
-use super::{Checked, Fault, is_as_hashed};
+use super::{Checked, Fault, RUNS_READ, is_as_hashed};
+use crate::progress::{Progress, Told};
 use crate::record::Record;
 use crate::store::{KeptRun, Rebinding, Rebuilt, Snapshot, StoreError, TABLES};
 
@@ -21,7 +22,7 @@ const BINDING: &str = "binding";
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read at all.
-pub fn check_plant(plant: &Snapshot, told: &mut dyn FnMut(usize)) -> Result<Checked, StoreError> {
+pub fn check_plant(plant: &Snapshot, told: Told<'_>) -> Result<Checked, StoreError> {
     let mut look = Look { plant, rebuilt: Rebuilt::of_plant()?, runs: 0, unread: 0, faults: Vec::new() };
     look.at_runs(told)?;
     let rebindings = plant.rebindings()?;
@@ -66,7 +67,7 @@ struct Look<'a> {
 
 impl Look<'_> {
     /// Goes through all runs in the order in which they began.
-    fn at_runs(&mut self, told: &mut dyn FnMut(usize)) -> Result<(), StoreError> {
+    fn at_runs(&mut self, told: Told<'_>) -> Result<(), StoreError> {
         let mut after = String::new();
         loop {
             let page = self.plant.kept_runs(&after)?;
@@ -82,7 +83,7 @@ impl Look<'_> {
                     }
                 }
             }
-            told(self.runs);
+            told(Progress { what: RUNS_READ, done: self.runs, of: None });
         }
     }
 

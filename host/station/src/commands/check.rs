@@ -7,6 +7,7 @@ use halfrow::result::Problem;
 use halfrow::words::{count, plain_lines, verb};
 use serde_json::json;
 
+use super::progress::teller;
 use super::{Failure, document};
 use crate::check::{self, Checked, Fault};
 use crate::codes;
@@ -29,7 +30,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let checked = check::check(&Folder::new(&arguments.data))?;
+    let checked = check::check(&Folder::new(&arguments.data), &mut teller())?;
     tell(&checked, arguments.json)
 }
 

@@ -9,11 +9,13 @@ use halfrow::words::{self, verb};
 
 use super::evidence::over;
 use super::looking::{Filtered, Results};
+use super::progress::teller;
 use super::{Failure, tell};
 use crate::console;
 use crate::exit::Exit;
 use crate::export::{self, ExportError, Format, Table};
 use crate::history::runs::{Filter, MOST, page};
+use crate::progress::Progress;
 use crate::record::Record;
 use crate::said::Said;
 use crate::store::Snapshot;
@@ -98,7 +100,7 @@ fn each(
     filter: &Filter,
     mut write: impl FnMut(&str, Record, Vec<u8>) -> Result<(), Failure>,
 ) -> Result<Exported, Failure> {
-    let (mut exported, mut after) = (Exported::default(), None);
+    let (mut exported, mut after, mut told) = (Exported::default(), None, teller());
     loop {
         let page = page(of, filter, after.as_ref(), MOST)?;
         for run in &page.runs {
@@ -107,6 +109,7 @@ fn each(
                 Ok((record, bytes)) => {
                     write(&run.id, record, bytes)?;
                     exported.written += 1;
+                    told(Progress { what: "runs written", done: exported.written, of: None });
                 }
                 Err(error) if error.is_of_record() => {
                     tracing::warn!("the run {} is left out: {}", run.id, Said::of(&error));

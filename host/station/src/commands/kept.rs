@@ -8,6 +8,7 @@ use halfrow_program::number::counted;
 use serde_json::json;
 
 use super::looking::Data;
+use super::progress::teller;
 use super::why::{at_station, person};
 use super::{Failure, document, tell};
 use crate::check::Fault;
@@ -30,8 +31,8 @@ pub(super) struct Backup {
 }
 
 pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
-    let copied = kept::backup(&arguments.data.folder(), &arguments.to)?;
-    let faults: Vec<_> = match kept::faults(&Folder::new(&arguments.to)) {
+    let copied = kept::backup(&arguments.data.folder(), &arguments.to, &mut teller())?;
+    let faults: Vec<_> = match kept::faults(&Folder::new(&arguments.to), &mut teller()) {
         Ok(faults) => faults.iter().map(Fault::told).collect(),
         Err(error) => vec![Said::of(&error).to_string()],
     };
@@ -68,7 +69,7 @@ pub(super) struct Restore {
 }
 
 pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
-    let copied = kept::restore(&Folder::new(&arguments.from), &arguments.data)?;
+    let copied = kept::restore(&Folder::new(&arguments.from), &arguments.data, &mut teller())?;
     let (runs, pieces) = (count(copied.runs, "run"), count(copied.evidence, "piece"));
     Ok(tell(&format!("{runs} and {pieces} of evidence were read back{}", with_unknown(&copied))))
 }

@@ -23,6 +23,7 @@ mod overview;
 mod pareto;
 mod plan;
 mod plant;
+mod progress;
 mod publish;
 mod rebind;
 pub(crate) mod refusals;

@@ -1,13 +1,12 @@
 //! `halfrow-station plant`
 
-use std::time::{Duration, Instant};
-
 use clap::{Args, Subcommand};
 use halfrow::words::{count, verb};
 use halfrow_program::number::counted;
 
 use super::beginning::{SettingsFile, Signal, make_data, plant};
 use super::fetching::{address, published};
+use super::progress::teller;
 use super::why::{Why, at_plant};
 use super::{Failure, check, tell};
 use crate::check::check_plant;
@@ -16,9 +15,6 @@ use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::store::{Plant, Snapshot};
 use crate::web::{Access, App, Server, User, Who};
-
-/// How often the progress of something long is printed.
-const TELL: Duration = Duration::from_secs(5);
 
 /// Keep the results of all stations in one PostgreSQL database
 ///
@@ -89,28 +85,15 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         }
         Action::Check { json } => {
             let snapshot = Snapshot::of_plant(Plant::connect(&address()?.patient())?)?;
-            let mut told = progress("runs read");
-            check::tell(&check_plant(&snapshot, &mut |runs| told(runs as u64))?, *json)
+            check::tell(&check_plant(&snapshot, &mut teller())?, *json)
         }
         Action::Prune { older_than, why } => {
-            let mut told = progress("rows removed");
             let mut plant = at_plant(&address()?.patient(), &why.operator, "plant prune")?;
-            let removed = plant.prune(*older_than, why.by(), &mut told)?;
+            let removed = plant.prune(*older_than, why.by(), &mut teller())?;
             let (rows, were) = (count(removed, "row"), verb(removed, "were"));
             Ok(tell(&format!("{rows} {were} removed; every record is kept")))
         }
         Action::Serve => serve(settings.load_without_lanes()?),
-    }
-}
-
-/// Prints from time to time how many are done, if somebody watches.
-fn progress(done: &'static str) -> impl FnMut(u64) {
-    let mut told = Instant::now();
-    move |count| {
-        if console::is_watched() && told.elapsed() >= TELL {
-            told = Instant::now();
-            console::diagnose(&format_args!("{count} {done}"));
-        }
     }
 }
 

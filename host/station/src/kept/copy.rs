@@ -11,6 +11,7 @@ use halfrow::files::written_aside::Place;
 
 use super::unnamed::beyond_rows;
 use crate::check::{Fault, check, foreign};
+use crate::progress::{Progress, Told};
 use crate::published::{BundleError, KeptPlans};
 use crate::record::{BlobError, Blobs, Piece, synced};
 use crate::said::Said;
@@ -81,25 +82,26 @@ pub enum CopyError {
 
 /// Copies the station in `from` to the new folder `to`. Runs may go on meanwhile; the copy is of the moment at which
 /// it began. It has whatever faults the station has, which [`faults`] finds; evidence that is damaged, or cannot be read, is
-/// missing in it.
+/// missing in it. `told` is called for each piece that is copied.
 ///
 /// # Errors
 /// [`CopyError`]
-pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
+pub fn backup(from: &Folder, to: &Path, told: Told<'_>) -> Result<Copied, CopyError> {
     Snapshot::take(from)?;
-    made(to, |aside| into(from, aside, BlobError::is_withheld))
+    made(to, |aside| into(from, aside, BlobError::is_withheld, told))
 }
 
 /// Makes a station's new folder `to` from the copy in `from`, if all of it is as it was written. A copy of an older
 /// program's is brought up to date on the way, and keeps its old database beside the new one; `from` stays as it is.
+/// `told` is called for each run that is read and each piece that is copied.
 ///
 /// # Errors
 /// [`CopyError`]
-pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
+pub fn restore(from: &Folder, to: &Path, told: Told<'_>) -> Result<Copied, CopyError> {
     if Place::of(from.path()).holds(to) {
         return Err(CopyError::Inside { path: to.to_owned() });
     }
-    match sound(from, from) {
+    match sound(from, from, told) {
         // The rest is checked once it is up to date.
         Err(CopyError::Store(StoreError::Older { .. })) => refuse(from, from, &foreign(from)?)?,
         looked_at => looked_at?,
@@ -112,9 +114,9 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
         if is_new {
             held.set_permissions(Permissions::from_mode(0o600)).map_err(refused)?;
         }
-        let copied = into(from, aside, |error| !error.is_gone())?;
+        let copied = into(from, aside, |error| !error.is_gone(), told)?;
         let new = Folder::new(aside);
-        sound(&new, from)?;
+        sound(&new, from, told)?;
         if new.lock_file().exists() {
             // It would replace the one that is held.
             fs::remove_file(new.lock_file()).map_err(refused)?;
@@ -217,15 +219,15 @@ fn move_all(moves: &[(PathBuf, PathBuf)], folder: &Path) -> Result<(), CopyError
 ///
 /// # Errors
 /// [`StoreError`] when its database cannot be read at all, for which it is refused, too.
-pub fn faults(folder: &Folder) -> Result<Vec<Fault>, StoreError> {
-    let mut faults = check(folder)?.faults;
+pub fn faults(folder: &Folder, told: Told<'_>) -> Result<Vec<Fault>, StoreError> {
+    let mut faults = check(folder, told)?.faults;
     faults.retain(|fault| !matches!(fault, Fault::Unnamed { .. }));
     Ok(faults)
 }
 
 /// Refuses a folder in which anything is not as it was written; the error names the folder `named`, of which it is a copy.
-fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
-    refuse(folder, named, &faults(folder)?)
+fn sound(folder: &Folder, named: &Folder, told: Told<'_>) -> Result<(), CopyError> {
+    refuse(folder, named, &faults(folder, told)?)
 }
 
 fn refuse(folder: &Folder, named: &Folder, faults: &[Fault]) -> Result<(), CopyError> {
@@ -241,7 +243,12 @@ fn refuse(folder: &Folder, named: &Folder, faults: &[Fault]) -> Result<(), CopyE
 }
 
 /// Copies the station in `from` to `aside`, without the evidence that is damaged or gone unless `ends` says that the copy ends there.
-fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Copied, CopyError> {
+fn into(
+    from: &Folder,
+    aside: &Path,
+    ends: fn(&BlobError) -> bool,
+    told: Told<'_>,
+) -> Result<Copied, CopyError> {
     let to = Folder::new(aside);
     let refused = |source| CopyError::Io { path: aside.to_owned(), source };
     // Listed before the database is copied, because a run has a row before it has a record.
@@ -268,7 +275,7 @@ fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Cop
     };
     let mut named = copy.named_evidence()?;
     named.append(&mut beyond_rows(&from.blobs(), &copy, Vec::new())?);
-    copy_named(&named, &from.blobs(), &to.blobs(), ends)?;
+    copy_named(&named, [&from.blobs(), &to.blobs()], ends, told)?;
     let (unknown, left_out) = copy_unnamed(&copy, (&pieces, &named), [&from.blobs(), &to.blobs()], ends)?;
     to.blobs().sync_names().and_then(|()| synced(aside)).map_err(StoreError::from)?;
     let evidence = to.blobs().all().map_err(StoreError::from)?.len();
@@ -279,11 +286,12 @@ fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Cop
 /// copy says whether it should be there, and all the rest may be needed one day.
 fn copy_named(
     named: &BTreeSet<String>,
-    from: &Blobs,
-    to: &Blobs,
+    [from, to]: [&Blobs; 2],
     ends: fn(&BlobError) -> bool,
+    told: Told<'_>,
 ) -> Result<(), StoreError> {
-    for hash in named {
+    for (hash, done) in named.iter().zip(1..) {
+        told(Progress { what: "pieces of evidence copied", done, of: Some(named.len()) });
         match from.get(hash) {
             Err(error) if ends(&error) => return Err(error.into()),
             Err(_) => {}

@@ -5,6 +5,7 @@ use super::super::retention::DAY_MS;
 use super::super::{By, Snapshot, StoreError, statements as sql};
 use super::Plant;
 use crate::ids;
+use crate::progress::{Progress, Told};
 
 /// The name of this act in the audit. A station's own act, which removes evidence, has another one.
 const PRUNE: &str = "prune rows";
@@ -16,7 +17,7 @@ impl Plant {
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
-    pub fn prune(&mut self, days: u32, by: By<'_>, told: &mut dyn FnMut(u64)) -> Result<u64, StoreError> {
+    pub fn prune(&mut self, days: u32, by: By<'_>, told: Told<'_>) -> Result<u64, StoreError> {
         let bound = ids::first_of(self.now_ms()?.saturating_sub(DAY_MS * i64::from(days)));
         self.audited("to be pruned", by.does(PRUNE, &bound), |_| Ok(1))?;
         let (mut after, mut removed) = (String::new(), 0);
@@ -31,7 +32,11 @@ impl Plant {
                     Ok(steps + to.execute(sql::PRUNE_MEASUREMENTS, values![&after, &last])?)
                 })
             })?;
-            told(removed);
+            told(Progress {
+                what: "rows removed",
+                done: usize::try_from(removed).unwrap_or(usize::MAX),
+                of: None,
+            });
             after = last;
         }
     }

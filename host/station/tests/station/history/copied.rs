@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use halfrow_station::kept::{backup, restore};
+use halfrow_station::progress::{Progress, untold};
 use halfrow_station::store::{Folder, Store, StoreError};
 use tempfile::TempDir;
 
@@ -26,7 +27,7 @@ fn failed() -> (Made, PathBuf, TempDir) {
 fn a_copy_lacks_what_is_damaged_or_lost_and_has_all_the_rest() {
     let (made, evidence, place) = failed();
     let [whole, damaged, lost] = ["whole", "damaged", "lost"].map(|name| place.path().join(name));
-    assert_eq!(backup(&made.folder(), &whole).unwrap().evidence, 2);
+    assert_eq!(backup(&made.folder(), &whole, &mut untold).unwrap().evidence, 2);
     let of_station = made.folder().path().join(&evidence);
     for copy in [&damaged, &lost] {
         if copy == &damaged {
@@ -44,7 +45,7 @@ fn a_copy_lacks_what_is_damaged_or_lost_and_has_all_the_rest() {
     let to = lost.join(&evidence);
     fs::create_dir_all(to.parent().unwrap()).unwrap();
     fs::copy(whole.join(evidence), to).unwrap();
-    restore(&Folder::new(&lost), &place.path().join("again")).unwrap();
+    restore(&Folder::new(&lost), &place.path().join("again"), &mut untold).unwrap();
 }
 
 /// People look for space where an error tells them to.
@@ -73,7 +74,7 @@ fn restored(copy: &Path, to: &Path, refused: &str) -> Did {
 fn of_a_copy_whose_names_the_disk_did_not_take_nothing_stays() {
     let (made, _, place) = failed();
     let [copy, new, empty, trace] = ["copy", "new", "empty", "trace"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     for is_there in [false, true] {
         let to = if is_there { &empty } else { &new };
         let begin = || {
@@ -94,9 +95,22 @@ fn of_a_copy_whose_names_the_disk_did_not_take_nothing_stays() {
         let kept = fs::read_dir(to)
             .map_or(0, |left| left.filter(|one| one.as_ref().unwrap().file_name() != "station.lock").count());
         assert_eq!((kept, to.exists()), (0, is_there), "{did:?}");
-        restore(&Folder::new(&copy), to).unwrap();
+        restore(&Folder::new(&copy), to, &mut untold).unwrap();
         assert_eq!(check(to).code, Some(0));
     }
+}
+
+#[test]
+fn whoever_restores_a_copy_is_told_how_far_that_has_come() {
+    let (made, _, place) = failed();
+    let [copy, to] = ["copy", "to"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy, &mut untold).unwrap();
+    let mut told = Vec::new();
+    restore(&Folder::new(&copy), &to, &mut |progress| told.push(progress)).unwrap();
+    let progress = |what, done, of| Progress { what, done, of: Some(of) };
+    let read = progress("runs read", 1, 1);
+    let copied = [1, 2].map(|done| progress("pieces of evidence copied", done, 2));
+    assert_eq!(told, [read, copied[0], copied[1], read]);
 }
 
 /// Every piece needs its folder's name and its own on the disk, but no folder more than once.
@@ -104,7 +118,7 @@ fn of_a_copy_whose_names_the_disk_did_not_take_nothing_stays() {
 fn each_folder_of_a_copys_evidence_is_brought_to_the_disk_once() {
     let (made, _, place) = failed();
     let [copy, to, trace] = ["copy", "to", "trace"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     let mut call = Command::new("strace");
     call.args(["-y", "-qq", "-e", "trace=fsync", "-o"]).arg(&trace).arg(program()).arg("restore").arg(&copy);
     assert!(call.arg("--data").arg(&to).status().unwrap().success());
@@ -122,7 +136,7 @@ fn each_folder_of_a_copys_evidence_is_brought_to_the_disk_once() {
 fn of_a_folder_that_was_made_for_a_copy_nothing_stays_when_the_copy_cannot_begin() {
     let (made, _, place) = failed();
     let [copy, to] = ["copy", "to"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     let mut left = ["fsync:error=EIO:when=1", "mkdir:error=ENOSPC:when=2", "flock:error=ENOLCK"].to_vec();
     left.retain(|refused| {
         let did = restored(&copy, &to, &format!("inject={refused}"));
@@ -137,12 +151,12 @@ fn of_a_folder_that_was_made_for_a_copy_nothing_stays_when_the_copy_cannot_begin
 fn no_station_begins_where_a_restore_was_killed_that_made_its_folder() {
     let (made, _, place) = failed();
     let [copy, to] = ["copy", "to"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     restored(&copy, &to, "inject=renameat2:signal=SIGKILL");
     let refused = Store::open(&Folder::new(&to)).unwrap_err();
     assert!(matches!(refused, StoreError::Unrestored { .. }), "{refused:?}");
     fs::remove_dir_all(to.join(".partial")).unwrap();
-    restore(&Folder::new(&copy), &to).unwrap();
+    restore(&Folder::new(&copy), &to, &mut untold).unwrap();
     assert_eq!(check(&to).code, Some(0));
 }
 
@@ -151,7 +165,7 @@ fn no_station_begins_where_a_restore_was_killed_that_made_its_folder() {
 fn a_copy_is_made_though_the_folder_in_which_it_was_begun_stays() {
     let (made, _, place) = failed();
     let [copy, to] = ["copy", "to"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     fs::create_dir(&to).unwrap();
     let did = restored(&copy, &to, "inject=rmdir,unlinkat:error=EIO");
     assert_eq!(did.code, Some(0), "{did:?}");

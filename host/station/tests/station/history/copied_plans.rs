@@ -6,6 +6,7 @@ use std::path::Path;
 
 use halfrow_station::kept::{CopyError, backup, restore};
 use halfrow_station::plan::Plan;
+use halfrow_station::progress::untold;
 use halfrow_station::store::Folder;
 
 use super::commands::did;
@@ -53,17 +54,17 @@ fn a_copy_in_which_a_link_is_is_refused() {
     let [secret, copy, again] = ["secret", "copy", "again"].map(|name| place.path().join(name));
     fs::create_dir(&secret).unwrap();
     fs::write(secret.join("shadow"), "root").unwrap();
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     let hash = fetched(&copy.join("plans"));
     for link in ["plans/evil", &format!("plans/{hash}/evil")] {
         symlink(&secret, copy.join(link)).unwrap();
-        let refused = restore(&Folder::new(&copy), &again).unwrap_err();
+        let refused = restore(&Folder::new(&copy), &again, &mut untold).unwrap_err();
         assert!(matches!(refused, CopyError::Faulty { faults: 1, .. }), "{refused:?}");
         assert!(refused.to_string().contains(&format!("{link} is neither a file nor a folder")), "{refused}");
         assert!(!again.exists());
         fs::remove_file(copy.join(link)).unwrap();
     }
-    restore(&Folder::new(&copy), &again).unwrap();
+    restore(&Folder::new(&copy), &again, &mut untold).unwrap();
     assert_eq!(files(&again.join("plans")), [format!("{hash}/frames/a.pgm"), format!("{hash}/plan.toml")]);
 }
 
@@ -83,7 +84,7 @@ fn of_plans_a_copy_has_whole_ones_and_what_holds() {
     fs::write(plans.join(format!("{other}.json")), "root").unwrap();
     fs::write(plans.join("loose.json"), r#"{"statement":"","signature":""}"#).unwrap();
     let copy = place.path().join("copy");
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     let names = ["/frames/a.pgm", "/plan.toml", ".json"];
     let mut expected = names.map(|name| format!("{hash}{name}"));
     expected.sort();

@@ -3,6 +3,7 @@
 use halfrow::Verdict;
 use halfrow_station::check::check;
 use halfrow_station::history::unit::units;
+use halfrow_station::progress::untold;
 use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
 use rusqlite::Connection;
 
@@ -31,7 +32,7 @@ fn a_database_is_brought_up_to_date_with_a_copy_beside_it_by_who_writes_alone() 
 fn a_clock_that_is_set_back_puts_no_run_in_front_of_an_earlier_one() {
     let back = Run { started_ms: BEGIN_MS - HOUR_MS, ..Run::of("S1", End::Fail(&["memory"])) };
     let last = |made: &Made| units(&made.now(), "S1").unwrap()[0].runs[0].line.verdict;
-    let faults = |made: &Made| check(&made.folder()).unwrap().faults.len();
+    let faults = |made: &Made| check(&made.folder(), &mut untold).unwrap().faults.len();
     let mut by_clock = Made::new();
     by_clock.run(&Run::of("S1", End::Pass));
     by_clock.run(&back);
@@ -59,7 +60,9 @@ fn what_was_counted_wrong_is_told_by_check() {
     for (end, hour) in [End::Fail(&["memory"]), End::Pass].into_iter().zip(0..) {
         made.run(&Run::of("S1", end).at_hour(hour));
     }
-    let faults = || check(&made.folder()).unwrap().faults.iter().map(ToString::to_string).collect::<Vec<_>>();
+    let faults = || {
+        check(&made.folder(), &mut untold).unwrap().faults.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
     assert_eq!(faults(), Vec::<String>::new());
     for (change, told) in [
         ("UPDATE day_count SET passed = passed + 1", "passed is `1`, and the records say `0`"),

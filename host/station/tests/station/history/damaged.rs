@@ -4,6 +4,7 @@ use std::fs;
 
 use halfrow_station::check::{Fault, check};
 use halfrow_station::kept::{CopyError, backup, faults, restore};
+use halfrow_station::progress::untold;
 use halfrow_station::store::{Folder, Snapshot, Store};
 
 use super::commands::did;
@@ -22,7 +23,7 @@ fn changed(statements: &str) -> Made {
 
 /// What `check` says of a database that is damaged, and how many other faults it has.
 fn told(made: &Made) -> (Vec<String>, usize) {
-    let mut faults = check(&made.folder()).unwrap().faults;
+    let mut faults = check(&made.folder(), &mut untold).unwrap().faults;
     let count = faults.len();
     faults.retain(|fault| matches!(fault, Fault::Database { .. }));
     let others = count - faults.len();
@@ -104,9 +105,12 @@ fn an_index_that_is_lost_or_another_one_is_a_fault_and_is_not_restored() {
         assert_eq!(told(&made), (vec![damaged(said)], 0));
         let place = tempfile::tempdir().unwrap();
         let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
-        backup(&made.folder(), &copy).unwrap();
-        assert_eq!(faults(&Folder::new(&copy)).unwrap().len(), 1);
-        assert!(matches!(restore(&Folder::new(&copy), &again), Err(CopyError::Faulty { faults: 1, .. })));
+        backup(&made.folder(), &copy, &mut untold).unwrap();
+        assert_eq!(faults(&Folder::new(&copy), &mut untold).unwrap().len(), 1);
+        assert!(matches!(
+            restore(&Folder::new(&copy), &again, &mut untold),
+            Err(CopyError::Faulty { faults: 1, .. })
+        ));
     }
     // What somebody adds to look something up faster is in nobody's way.
     assert_eq!(told(&changed("CREATE INDEX mine ON run (headline)")), (Vec::new(), 0));

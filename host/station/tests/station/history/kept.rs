@@ -7,6 +7,7 @@ use std::path::Path;
 use halfrow_station::check::{Checked, check};
 use halfrow_station::history::runs::{Filter, Page, page};
 use halfrow_station::kept::{Copied, CopyError, Pruned, backup, prune, restore};
+use halfrow_station::progress::untold;
 use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
 use tempfile::TempDir;
 
@@ -30,7 +31,8 @@ fn runs(folder: &Folder) -> Page {
 
 /// Counts runs that ended, open runs, pieces of evidence, and pieces that were removed.
 fn sound(folder: &Folder) -> [usize; 4] {
-    let Checked { runs, open, evidence, pruned, superseded, faults, .. } = check(folder).unwrap();
+    let Checked { runs, open, evidence, pruned, superseded, faults, .. } =
+        check(folder, &mut untold).unwrap();
     assert!(faults.is_empty() && superseded.is_empty(), "{faults:?} {superseded:?}");
     [runs, open, evidence, pruned]
 }
@@ -45,7 +47,7 @@ fn a_backup_is_of_its_moment_while_runs_go_on() {
     let place = tempfile::tempdir().unwrap();
     let to = place.path().join("copy");
     assert_eq!(
-        backup(&made.folder(), &to).unwrap(),
+        backup(&made.folder(), &to, &mut untold).unwrap(),
         Copied { runs: 3, evidence: 6, unknown: 0, left_out: Vec::new() }
     );
     let copy = Folder::new(&to);
@@ -72,8 +74,8 @@ fn a_restored_folder_is_the_one_that_was_saved() {
     let made = made();
     let place = tempfile::tempdir().unwrap();
     let (copy, again) = (place.path().join("copy"), place.path().join("again"));
-    backup(&made.folder(), &copy).unwrap();
-    restore(&Folder::new(&copy), &again).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
+    restore(&Folder::new(&copy), &again, &mut untold).unwrap();
     assert_eq!(sound(&Folder::new(&again)), [3, 1, 7, 0]);
     assert_eq!(runs(&Folder::new(&again)), runs(&made.folder()));
     // A station can work in the folder: the open run is closed, and another one can begin.
@@ -86,11 +88,11 @@ fn a_restored_folder_is_the_one_that_was_saved() {
 fn a_folder_that_is_there_stays_the_one_that_it_is() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());
     let [copy, disk] = ["copy", "disk"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     fs::create_dir_all(disk.join("lost+found")).unwrap();
     fs::set_permissions(&disk, fs::Permissions::from_mode(0o750)).unwrap();
     let before = fs::metadata(&disk).unwrap();
-    restore(&Folder::new(&copy), &disk).unwrap();
+    restore(&Folder::new(&copy), &disk, &mut untold).unwrap();
     assert_eq!(sound(&Folder::new(&disk)), [3, 1, 7, 0]);
     let after = fs::metadata(&disk).unwrap();
     assert_eq!((after.ino(), after.mode()), (before.ino(), before.mode()));
@@ -103,13 +105,13 @@ fn a_folder_that_is_there_stays_the_one_that_it_is() {
 fn no_station_begins_where_a_restore_has_not_ended() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());
     let [copy, data] = ["copy", "data"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     fs::create_dir_all(data.join(".partial/blobs")).unwrap();
     let refused = Store::open(&Folder::new(&data)).unwrap_err().to_string();
     assert!(refused.contains("a restore in ") && refused.contains(".partial"), "{refused}");
     assert_eq!(fs::read_dir(&data).unwrap().count(), 1, "nothing was begun");
     fs::remove_dir_all(data.join(".partial")).unwrap();
-    restore(&Folder::new(&copy), &data).unwrap();
+    restore(&Folder::new(&copy), &data, &mut untold).unwrap();
     // What a restore that was interrupted at its very end has left, or a backup, is in no station's way.
     fs::create_dir(data.join(".partial")).unwrap();
     drop(Store::open(&Folder::new(&data)).unwrap());
@@ -120,15 +122,15 @@ fn no_station_begins_where_a_restore_has_not_ended() {
 fn a_restore_keeps_a_start_out_and_comes_to_no_folder_in_which_one_works() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());
     let [copy, data] = ["copy", "data"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     fs::create_dir(&data).unwrap();
     let lock = fs::File::create(data.join("station.lock")).unwrap();
     lock.lock().unwrap();
-    let refused = restore(&Folder::new(&copy), &data).unwrap_err();
+    let refused = restore(&Folder::new(&copy), &data, &mut untold).unwrap_err();
     assert!(matches!(refused, CopyError::Store(StoreError::InUse { .. })), "{refused:?}");
     drop(lock);
     // What is left of the lock of a killed restore is in no other's way.
-    restore(&Folder::new(&copy), &data).unwrap();
+    restore(&Folder::new(&copy), &data, &mut untold).unwrap();
     assert_eq!(sound(&Folder::new(&data)), [3, 1, 7, 0]);
     drop(Store::open(&Folder::new(&data)).unwrap());
 }
@@ -149,9 +151,9 @@ fn a_copy_and_what_is_restored_of_it_are_for_nobody_else() {
     let [copy, into, again] = ["copy", "into", "again"].map(|name| place.path().join(name));
     fs::create_dir(&into).unwrap();
     fs::set_permissions(&into, fs::Permissions::from_mode(0o755)).unwrap();
-    backup(&made.folder(), &copy).unwrap();
-    backup(&made.folder(), &into).unwrap();
-    restore(&Folder::new(&copy), &again).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
+    backup(&made.folder(), &into, &mut untold).unwrap();
+    restore(&Folder::new(&copy), &again, &mut untold).unwrap();
     for folder in [&copy, &into, &again] {
         assert!(folder.join("station.db").is_file() && folder.join("blobs").is_dir());
         assert_eq!(open_to_others(folder), [], "{}", folder.display());
@@ -164,10 +166,10 @@ fn a_copy_and_what_is_restored_of_it_are_for_nobody_else() {
 fn nothing_is_restored_into_the_copy_itself() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());
     let copy = place.path().join("copy");
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     let before = fs::read_dir(&copy).unwrap().count();
     for inside in ["in", "blobs/in", "."] {
-        let refused = restore(&Folder::new(&copy), &copy.join(inside)).unwrap_err();
+        let refused = restore(&Folder::new(&copy), &copy.join(inside), &mut untold).unwrap_err();
         assert!(refused.to_string().contains("inside the copy that is restored"), "{refused}");
     }
     assert_eq!(fs::read_dir(&copy).unwrap().count(), before);
@@ -180,13 +182,13 @@ fn nothing_is_overwritten_and_damage_is_not_copied() {
     let full = place.path().join("full");
     fs::create_dir(&full).unwrap();
     fs::write(full.join("thesis.txt"), "years").unwrap();
-    assert!(matches!(backup(&made.folder(), &full), Err(CopyError::Exists { .. })));
+    assert!(matches!(backup(&made.folder(), &full, &mut untold), Err(CopyError::Exists { .. })));
     assert_eq!(fs::read_dir(&full).unwrap().count(), 1);
     let copy = place.path().join("copy");
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     fs::write(Folder::new(&copy).blobs().path(&hash_of("new")), "other").unwrap();
     let again = place.path().join("again");
-    let refused = restore(&Folder::new(&copy), &again).unwrap_err();
+    let refused = restore(&Folder::new(&copy), &again, &mut untold).unwrap_err();
     assert!(matches!(refused, CopyError::Faulty { faults: 1, .. }), "{refused:?}");
     assert!(refused.to_string().contains("holds other bytes"), "{refused}");
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 2, "what was begun is removed");
@@ -209,7 +211,7 @@ fn old_evidence_is_removed_and_no_record_or_row() {
     let place = tempfile::tempdir().unwrap();
     let to = place.path().join("copy");
     assert_eq!(
-        backup(&made.folder(), &to).unwrap(),
+        backup(&made.folder(), &to, &mut untold).unwrap(),
         Copied { runs: 3, evidence: 3, unknown: 0, left_out: Vec::new() }
     );
     assert_eq!(sound(&Folder::new(&to)), [3, 1, 3, 4]);
@@ -240,7 +242,7 @@ fn evidence_of_a_run_that_ended_by_a_clock_from_long_ago_is_no_older_for_it() {
 fn evidence_that_was_not_removed_by_age_is_missed() {
     let made = made();
     fs::remove_file(made.folder().blobs().path(&hash_of("old"))).unwrap();
-    assert_eq!(check(&made.folder()).unwrap().faults.len(), 1);
+    assert_eq!(check(&made.folder(), &mut untold).unwrap().faults.len(), 1);
 }
 
 /// What was removed with its run was written anew with a later one, and is now lost.
@@ -254,7 +256,7 @@ fn evidence_of_a_later_run_is_missed_though_an_earlier_one_s_was_removed() {
     made.run(&Run { started_ms, lane, evidence: vec!["old"], ..Run::of("S6", End::Fail(&["memory"])) });
     assert_eq!(sound(&made.folder()), [4, 1, 6, 3]);
     fs::remove_file(made.folder().blobs().path(&hash_of("old"))).unwrap();
-    assert_eq!(check(&made.folder()).unwrap().faults.len(), 1);
+    assert_eq!(check(&made.folder(), &mut untold).unwrap().faults.len(), 1);
 }
 
 #[test]
@@ -317,9 +319,9 @@ fn a_copy_that_would_not_be_restored_is_kept_and_told() {
     let [first, second, told] = &lines[..] else { panic!("{said}") };
     assert!([first, second].iter().all(|line| line.starts_with("fault: table run, row ")), "{said}");
     assert!(told.contains(" are in ") && told.contains("; `restore` refuses it for 2 faults"), "{said}");
-    let refused = restore(&Folder::new(&copy), &again).unwrap_err();
+    let refused = restore(&Folder::new(&copy), &again, &mut untold).unwrap_err();
     assert!(matches!(refused, CopyError::Faulty { faults: 2, .. }), "{refused:?}");
-    restore(&Folder::new(&whole), &again).unwrap();
+    restore(&Folder::new(&whole), &again, &mut untold).unwrap();
 }
 
 /// The folder of a station that judged one unit, without these of its files.
@@ -338,8 +340,10 @@ fn kept_without(files: &[&str]) -> (TempDir, Folder) {
 fn a_file_that_is_no_database_is_told_from_a_disk_that_is_full_or_locked() {
     let (_kept, folder) = kept_without(&["station.db-wal", "station.db-shm"]);
     let whole = fs::read(folder.database()).unwrap();
-    let refused =
-        || [Store::open(&folder).map(drop), check(&folder).map(drop)].map(|opened| opened.unwrap_err());
+    let refused = || {
+        [Store::open(&folder).map(drop), check(&folder, &mut untold).map(drop)]
+            .map(|opened| opened.unwrap_err())
+    };
     for damaged in [b"another file of this name ".repeat(40), [&[0; 512], &whole[512..]].concat()] {
         fs::write(folder.database(), damaged).unwrap();
         for error in refused() {
@@ -360,11 +364,11 @@ fn a_column_that_has_lost_its_name_is_a_fault_of_the_database() {
     let database = rusqlite::Connection::open(folder.database()).unwrap();
     database.execute_batch("ALTER TABLE retest RENAME COLUMN last_ms TO lsst_ms").unwrap();
     drop(database);
-    let faults = check(&folder).unwrap().faults;
+    let faults = check(&folder, &mut untold).unwrap().faults;
     let [fault] = &faults[..] else { panic!("{faults:?}") };
     assert!(fault.to_string().starts_with("the database is damaged (there is no retest.last_ms)"), "{fault}");
     let place = tempfile::tempdir().unwrap();
-    let refused = restore(&folder, &place.path().join("restored")).unwrap_err();
+    let refused = restore(&folder, &place.path().join("restored"), &mut untold).unwrap_err();
     assert!(matches!(refused, CopyError::Faulty { .. }), "{refused:?}");
 }
 
@@ -373,7 +377,7 @@ fn a_column_that_has_lost_its_name_is_a_fault_of_the_database() {
 fn nothing_begins_anew_beside_the_evidence_of_earlier_runs() {
     let (kept, folder) = kept_without(&["station.db", "station.db-wal", "station.db-shm"]);
     let refused = |folder: &Folder| {
-        let opened = [Store::open(folder).map(drop), check(folder).map(drop)];
+        let opened = [Store::open(folder).map(drop), check(folder, &mut untold).map(drop)];
         opened.map(|opened| matches!(opened, Err(StoreError::DatabaseGone { .. })))
     };
     assert_eq!(refused(&folder), [true, true]);

@@ -4,6 +4,7 @@ use std::process::Command;
 
 use halfrow::result::sha256;
 use halfrow_station::kept::backup;
+use halfrow_station::progress::untold;
 use halfrow_station::store::Folder;
 
 use super::made::{End, Made, Run};
@@ -16,7 +17,7 @@ fn a_pipe_in_the_place_of_a_copy_s_evidence_is_told_and_nobody_waits_for_it() {
     made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
     let place = tempfile::tempdir().unwrap();
     let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     replaced_by_pipe(&Folder::new(&copy).blobs().path(&sha256([b"seen"])));
     let mut call = Command::new("timeout");
     call.arg("120").arg(program()).arg("restore").arg(&copy).arg("--data").arg(&again);

@@ -7,6 +7,7 @@ use std::process::Command;
 
 use halfrow_station::check::check;
 use halfrow_station::kept::backup;
+use halfrow_station::progress::untold;
 use halfrow_station::store::{Folder, Snapshot, Store};
 use rusqlite::Connection;
 use rusqlite::config::DbConfig;
@@ -118,7 +119,7 @@ fn a_verdict_is_read_back_out_of_the_log_of_a_file_without_a_name() {
 fn a_database_is_not_opened_with_the_log_of_another_one() {
     let (made, earlier, _) = in_its_second_session();
     let copy = folder();
-    backup(&made.folder(), &copy.path().join("copy")).unwrap();
+    backup(&made.folder(), &copy.path().join("copy"), &mut untold).unwrap();
     let [of_before, of_now] = [earlier.path(), &copy.path().join("copy")].map(|data| data.join("station.db"));
     let open = |left: &TempDir| Store::open(&Folder::new(left.path())).map(drop);
     // What a kill leaves is whole, however often it is opened.
@@ -242,7 +243,7 @@ fn a_station_whose_lock_is_another_file_goes_on_with_nothing_and_lets_no_lock_go
 fn a_start_says_once_that_its_database_was_put_back() {
     let (made, earlier, _) = in_its_second_session();
     let copy = folder();
-    backup(&made.folder(), &copy.path().join("copy")).unwrap();
+    backup(&made.folder(), &copy.path().join("copy"), &mut untold).unwrap();
     let kept = made.closed();
     let is_said = |data: &Path| {
         let (code, _, said) = did(&data, &["prune", "--operator", "weber"]);
@@ -308,7 +309,7 @@ fn is_taken(copy: &Path, left: &Path, judged: usize) -> bool {
     let taken = Store::open(&data).map(drop);
     if let Err(refused) = &taken {
         assert!(refused.to_string().contains("is the log of another database"), "{refused}");
-        for refused in [Snapshot::take(&data).map(drop), check(&data).map(drop)] {
+        for refused in [Snapshot::take(&data).map(drop), check(&data, &mut untold).map(drop)] {
             let refused = refused.unwrap_err().to_string();
             assert!(refused.contains("is the log of another database"), "{refused}");
         }
@@ -387,7 +388,7 @@ fn of_a_copy_that_comes_into_a_folder_the_database_comes_last() {
     made.run(&Run::of("S1", End::Pass));
     let (place, data) = (folder(), folder());
     let [copy, renamed] = ["copy", "renamed"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     let mut call = Command::new("strace");
     call.args(["-f", "-qq", "-e", "trace=rename,renameat,renameat2", "-o"]).arg(&renamed);
     call.arg(program()).arg("restore").arg(&copy).arg("--data").arg(data.path());

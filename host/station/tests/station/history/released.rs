@@ -9,6 +9,7 @@ use std::process::Command;
 use halfrow_station::check::check;
 use halfrow_station::history::Period;
 use halfrow_station::history::yields::{By, Wanted, yields};
+use halfrow_station::progress::untold;
 use halfrow_station::record::RunCause;
 use halfrow_station::store::{Change, Folder, Store};
 use rusqlite::Connection;
@@ -90,7 +91,7 @@ fn exported(data: &Path) -> String {
 /// after a crash, S4 was too late, S5 only came to an error, and S6 is open.
 fn is_true_of(data: &Path) {
     let folder = Folder::new(data);
-    let checked = check(&folder).unwrap();
+    let checked = check(&folder, &mut untold).unwrap();
     assert!(checked.faults.is_empty(), "{:?}", checked.faults);
     assert_eq!((checked.runs, checked.open), (7, 1));
     let snapshot = halfrow_station::store::Snapshot::take(&folder).unwrap();

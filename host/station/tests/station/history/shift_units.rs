@@ -4,6 +4,7 @@ use halfrow_station::check::check;
 use halfrow_station::history::counts::Tally;
 use halfrow_station::history::pareto::{Of, pareto};
 use halfrow_station::history::yields::{By, Wanted, yields};
+use halfrow_station::progress::untold;
 use halfrow_station::record::RunCause;
 use halfrow_station::store::{Folder, Snapshot, Store};
 use rusqlite::Connection;
@@ -39,7 +40,7 @@ pub(crate) fn made() -> Made {
 
 /// Asserts of a station's folder that all is as its records say, and counted right.
 fn is_right(folder: &Folder) {
-    let faults = check(folder).unwrap().faults;
+    let faults = check(folder, &mut untold).unwrap().faults;
     assert!(faults.is_empty(), "{faults:?}");
     is_counted_right(&Snapshot::take(folder).unwrap());
 }

@@ -8,6 +8,7 @@ use std::time::{Duration, SystemTime};
 
 use halfrow_station::check::{Fault, check};
 use halfrow_station::kept::{Copied, Pruned, Unnamed, backup, prune, prune_unnamed, restore};
+use halfrow_station::progress::untold;
 use halfrow_station::record::RunCause;
 use halfrow_station::run::{recover, recover_run};
 use halfrow_station::store::{Folder, SharedStore};
@@ -43,7 +44,7 @@ fn spool(folder: &Folder, run: &str, age: Duration) {
 }
 
 fn is_sound(folder: &Folder) {
-    let checked = check(folder).unwrap();
+    let checked = check(folder, &mut untold).unwrap();
     assert!(checked.faults.is_empty(), "{:?}", checked.faults);
 }
 
@@ -147,10 +148,10 @@ fn what_a_record_names_stays_and_is_copied_where_its_rows_are_lost() {
     assert_eq!(prune_unnamed(&mut made.store, "engel").unwrap(), Unnamed::default());
     let place = tempfile::tempdir().unwrap();
     let copy = place.path().join("copy");
-    assert_eq!(backup(&folder, &copy).unwrap().evidence, 4);
+    assert_eq!(backup(&folder, &copy, &mut untold).unwrap().evidence, 4);
     for folder in [folder, Folder::new(&copy)] {
         assert_eq!(
-            check(&folder).unwrap().evidence,
+            check(&folder, &mut untold).unwrap().evidence,
             5,
             "the shared piece is looked at with each of its runs"
         );
@@ -169,10 +170,10 @@ fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {
     let place = tempfile::tempdir().unwrap();
     let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
     let copied = Copied { runs: 0, evidence: 2, unknown: 1, left_out: Vec::new() };
-    assert_eq!(backup(&Folder::new(folder.path()), &copy).unwrap(), copied);
-    assert_eq!(restore(&Folder::new(&copy), &again).unwrap(), copied);
+    assert_eq!(backup(&Folder::new(folder.path()), &copy, &mut untold).unwrap(), copied);
+    assert_eq!(restore(&Folder::new(&copy), &again, &mut untold).unwrap(), copied);
     for place in [folder.path(), &copy, &again] {
-        let checked = check(&Folder::new(place)).unwrap();
+        let checked = check(&Folder::new(place), &mut untold).unwrap();
         let [Fault::Unnamed { run: told, sha256 }] = &checked.faults[..] else { panic!("{checked:?}") };
         assert_eq!((told, sha256), (&run, record));
         Folder::new(place).blobs().get(seen).unwrap();
@@ -207,7 +208,7 @@ fn a_copy_lacks_what_no_row_names_and_is_damaged_and_says_so() {
     let rest = "0 runs and 1 piece of evidence are in ";
     assert!(said.contains(rest) && said.contains("; with them 1 record of runs that no row names"), "{said}");
     assert!(said.ends_with("; without 2 pieces that no row names\n"), "{said}");
-    assert_eq!(restore(&Folder::new(&copy), &again).unwrap().unknown, 1);
+    assert_eq!(restore(&Folder::new(&copy), &again, &mut untold).unwrap().unknown, 1);
 }
 
 /// The power failed between the record and its row: the next start ends the run as ERROR, with another record.
@@ -221,7 +222,7 @@ fn a_record_that_came_to_no_row_is_no_fault() {
     recover(&mut made.store).unwrap();
     is_sound(&made.folder());
     let place = tempfile::tempdir().unwrap();
-    assert_eq!(backup(&made.folder(), &place.path().join("copy")).unwrap().unknown, 0);
+    assert_eq!(backup(&made.folder(), &place.path().join("copy"), &mut untold).unwrap().unknown, 0);
 }
 
 /// Stores a record of `run` that says PASS and that no row names; returns its file.
@@ -238,7 +239,7 @@ fn a_record_whose_run_was_saved_too_late_contradicts_nothing() {
     let run = made.run(&Run::of("S1", End::Open));
     let folder = made.folder();
     left_pass(&folder, &run);
-    let told = || check(&folder).unwrap().superseded.len();
+    let told = || check(&folder, &mut untold).unwrap().superseded.len();
     assert_eq!(told(), 1, "the control");
     let (_folder, store) = made.parts();
     recover_run(&SharedStore::new(store), &run).unwrap();
@@ -250,7 +251,7 @@ fn a_record_that_is_damaged_says_nothing_of_its_run() {
     let mut made = Made::new();
     let run = made.run(&Run::of("S1", End::Open));
     let left = left_pass(&made.folder(), &run);
-    let told = || check(&made.folder()).unwrap().superseded.len();
+    let told = || check(&made.folder(), &mut untold).unwrap().superseded.len();
     assert_eq!(told(), 1, "the control");
     fs::write(&left, [fs::read(&left).unwrap(), b" ".to_vec()].concat()).unwrap();
     assert_eq!(told(), 0);
@@ -266,7 +267,7 @@ fn a_verdict_whose_run_is_open_or_another_in_the_database_is_told_and_is_no_faul
     let begun = runs.each_ref().map(|run| made.begin(run));
     let place = tempfile::tempdir().unwrap();
     let copy = place.path().join("copy");
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     for (run, (head, plan)) in runs.iter().zip(begun) {
         made.finish(run, head, plan);
     }

@@ -6,6 +6,7 @@ use std::process::Command;
 
 use halfrow::result::sha256;
 use halfrow_station::kept::backup;
+use halfrow_station::progress::untold;
 use halfrow_station::store::Folder;
 
 use super::commands::did;
@@ -34,7 +35,7 @@ fn what_could_not_be_read_is_told_with_the_system_s_reason_and_not_called_damage
     let made = made();
     let place = tempfile::tempdir().unwrap();
     let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &copy, &mut untold).unwrap();
     let paths = [made.as_ref(), &copy, &again].map(|path| path.to_str().unwrap().to_owned());
     let [data, copy_name, again] = [0, 1, 2].map(|at| paths[at].as_str());
     let of = |folder: &Folder| folder.blobs().path(&sha256([b"seen"]));

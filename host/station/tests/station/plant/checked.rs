@@ -44,7 +44,8 @@ pub(crate) fn faults(server: &Server, name: &str) -> Vec<String> {
     let url = server.url().replace("/plant", &format!("/{name}"));
     let plant = Plant::connect(&PlantAddress::new(&url, None, None).unwrap()).unwrap();
     let mut read = 0;
-    let checked = check_plant(&Snapshot::of_plant(plant).unwrap(), &mut |runs| read = runs).unwrap();
+    let checked =
+        check_plant(&Snapshot::of_plant(plant).unwrap(), &mut |progress| read = progress.done).unwrap();
     assert_eq!(read, checked.runs);
     checked.faults.iter().map(ToString::to_string).collect()
 }
