@@ -172,3 +172,20 @@ fn a_copy_is_made_though_the_folder_in_which_it_was_begun_stays() {
     assert!(to.join(".partial").exists(), "the control");
     assert_eq!(check(&to).code, Some(0));
 }
+
+/// A kill in between leaves nothing that looks like a station with only some of its evidence.
+#[test]
+fn of_a_copy_that_comes_into_a_folder_the_database_comes_last() {
+    let (made, _, place) = failed();
+    let [copy, to, renamed] = ["copy", "to", "renamed"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy, &mut untold).unwrap();
+    let mut call = Command::new("strace");
+    call.args(["-f", "-qq", "-e", "trace=rename,renameat,renameat2", "-o"]).arg(&renamed);
+    call.arg(program()).arg("restore").arg(&copy).arg("--data").arg(&to);
+    assert!(call.status().unwrap().success());
+    let renamed = fs::read_to_string(&renamed).unwrap();
+    let moved: Vec<_> = renamed.lines().filter(|line| line.contains("/.partial/")).collect();
+    let is_database = |line: &&str| line.contains("/.partial/station.db\"");
+    assert!(moved.iter().any(|line| line.contains("/.partial/blobs\"")), "{renamed}");
+    assert_eq!(moved.iter().rposition(is_database), Some(moved.len() - 1), "{renamed}");
+}

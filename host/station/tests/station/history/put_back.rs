@@ -380,22 +380,3 @@ fn a_database_that_was_left_by_an_earlier_program_is_looked_at_before_its_log_co
     assert!(refused.contains("is damaged, or no database at all"), "{refused}");
     assert!(fs::read(left.path().join("station.db")).unwrap() == database, "the log was not played into it");
 }
-
-/// A kill in between leaves nothing that looks like a station with only some of its evidence.
-#[test]
-fn of_a_copy_that_comes_into_a_folder_the_database_comes_last() {
-    let mut made = Made::new();
-    made.run(&Run::of("S1", End::Pass));
-    let (place, data) = (folder(), folder());
-    let [copy, renamed] = ["copy", "renamed"].map(|name| place.path().join(name));
-    backup(&made.folder(), &copy, &mut untold).unwrap();
-    let mut call = Command::new("strace");
-    call.args(["-f", "-qq", "-e", "trace=rename,renameat,renameat2", "-o"]).arg(&renamed);
-    call.arg(program()).arg("restore").arg(&copy).arg("--data").arg(data.path());
-    assert!(call.status().unwrap().success());
-    let renamed = fs::read_to_string(&renamed).unwrap();
-    let moved: Vec<_> = renamed.lines().filter(|line| line.contains("/.partial/")).collect();
-    let is_database = |line: &&str| line.contains("/.partial/station.db\"");
-    assert!(moved.iter().any(|line| line.contains("/.partial/blobs\"")), "{renamed}");
-    assert_eq!(moved.iter().rposition(is_database), Some(moved.len() - 1), "{renamed}");
-}
