@@ -113,7 +113,7 @@ fn a_place_that_cannot_be_written_is_refused_before_the_training() {
     let folder = folder_of_pictures();
     let refused = train(&folder, &["-o", "none/mine.json"]);
     assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);
-    assert!(refused.stderr.contains("check that it exists and is writable"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("check that it exists, is writable and has space"), "{}", refused.stderr);
 }
 
 /// A folder `photos` with two pictures that have detail of every size, and a file that is no picture.
