@@ -91,14 +91,10 @@ pub fn ask(what: &str) {
     diagnose_raw(&format!("{what}: "));
 }
 
-/// Writes a line to stderr, if that takes it, with control characters spelt out.
+/// Writes one line to stderr, if that takes it. Control characters are spelt out, newlines among them: no name from outside begins a
+/// line of its own.
 pub fn diagnose(what: &dyn Display) {
-    diagnose_raw(&spelt(&format!("{what}\n")));
-}
-
-/// `text` with all control characters but newlines spelt out.
-fn spelt(text: &str) -> String {
-    text.split('\n').map(plain).collect::<Vec<_>>().join("\n")
+    diagnose_raw(&format!("{}\n", plain(&what.to_string())));
 }
 
 /// Like [`diagnose`], without adding a newline, and with control characters kept.
@@ -138,14 +134,15 @@ pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// The writer of the log: stderr, whose failures are ignored. Names of files reach it, so control characters are spelt out; the
-/// log has no colours of its own.
+/// The writer of the log, which gets each event whole, with a newline at its end. Names of files are in it, so it goes to stderr as by
+/// [`diagnose`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Log;
 
 impl Write for Log {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let _ = io::stderr().lock().write_all(spelt(&String::from_utf8_lossy(bytes)).as_bytes());
+        let event = String::from_utf8_lossy(bytes);
+        diagnose(&event.strip_suffix('\n').unwrap_or(&event));
         Ok(bytes.len())
     }
 

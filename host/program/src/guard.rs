@@ -104,7 +104,8 @@ fn note(panic: &PanicHookInfo<'_>) {
     panics().note(message.to_owned(), place.clone());
     let trace = Backtrace::capture();
     if trace.status() == BacktraceStatus::Captured {
-        console::diagnose(&format_args!("{message}{place}\n{trace}"));
+        console::diagnose(&format_args!("{message}{place}"));
+        trace.to_string().lines().for_each(|line| console::diagnose(&line));
     }
 }
 

@@ -73,6 +73,38 @@ fn a_name_that_is_read_is_told_in_words() {
     }
 }
 
+#[test]
+fn a_name_that_cannot_be_used_is_told_in_words() {
+    let folder = Folder::new();
+    let there = format!("{HOSTILE}.png");
+    std::fs::write(folder.path().join(&there), "").unwrap();
+    let missing = format!("{HOSTILE}.pgm");
+    let device = format!("serial:/dev/{HOSTILE}");
+    let mut settings = folder.command(["verify"]);
+    settings.env("HALFROW_SETTINGS", format!("{HOSTILE}.toml"));
+    for mut call in [
+        folder.command(["verify", "--board", "mock", "--frame", &missing]),
+        folder.command(["verify", "--board", "mock", "--kernel", &missing]),
+        folder.command(["verify", "--board", &device]),
+        folder.command(small("correct", &["builtin:black", "--model", "-o", &there])),
+        settings,
+    ] {
+        for ended in [finish(&mut call), finish(call.env("CLICOLOR_FORCE", "1"))] {
+            assert_ne!(ended.code, Some(0), "{call:?}");
+            assert_spelt(&ended.stderr, &format!("{call:?}"));
+        }
+    }
+}
+
+#[test]
+fn a_name_in_the_log_begins_no_line() {
+    let folder = Folder::new();
+    let call = small("correct", &["builtin:black", "--model", "-o", "b.pgm", "--radius", "40"]);
+    let ended = finish(folder.command(call).env("HALFROW_TABLES", format!("{HOSTILE}.json")));
+    let lines: Vec<_> = ended.stderr.lines().collect();
+    assert!(matches!(lines[..], [line] if line.contains("is passed over")), "{ended:?}");
+}
+
 /// Twice: the value as it was given, and in the words of whoever reads it.
 #[test]
 fn an_argument_that_is_refused_is_told_in_words() {
