@@ -62,10 +62,11 @@ impl TestedBoard {
         Ok(check_fit(tables, kernel, self.board.capabilities())?)
     }
 
-    /// Corrects `inputs` with these tables and this kernel, under a new generation.
+    /// Corrects `inputs` with these tables and this kernel, under another generation than the last.
     ///
     /// # Errors
-    /// [`PaperError::Misfit`] when the board cannot take them, [`PaperError::Board`] when it refuses or does not answer.
+    /// [`PaperError::Misfit`] when the board cannot take them, [`PaperError::Correct`] for an input that they are not for,
+    /// [`PaperError::Board`] when it refuses or does not answer.
     pub(crate) fn correct(
         &mut self,
         tables: &TableSet,
@@ -73,7 +74,7 @@ impl TestedBoard {
         inputs: &[Arc<Frame>],
         progress: &dyn Progress,
     ) -> Result<Corrected, PaperError> {
-        let generation = NonZeroU8::MIN.saturating_add(self.generation);
+        let generation = next(self.generation);
         self.generation = generation.get();
         let correction = Correction { tables, kernel, generation, first_frame: self.frames };
         let mut samples = Vec::with_capacity(inputs.len());
@@ -89,5 +90,21 @@ impl TestedBoard {
     /// Ends the session, so that the next host finds the board free.
     pub fn close(&mut self) {
         self.board.close();
+    }
+}
+
+/// The generation after `last`, which is 0 if there was none.
+fn next(last: u8) -> NonZeroU8 {
+    NonZeroU8::new(last.wrapping_add(1)).unwrap_or(NonZeroU8::MIN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables that stayed behind are told from new ones by their generation.
+    #[test]
+    fn no_generation_follows_itself() {
+        assert_eq!([0, 1, 254, 255].map(|last| next(last).get()), [1, 2, 255, 1]);
     }
 }
