@@ -140,10 +140,10 @@ fn json_names_the_outputs_and_the_kind_of_board_and_judges_nothing() {
 }
 
 #[test]
-fn what_does_not_fit_the_board_is_refused() {
+fn what_does_not_fit_the_board_is_refused_before_a_folder_is_made() {
     let folder = Folder::new();
     let on = |board, kernel| {
-        small("correct", &["builtin:black", "-o", "out.pgm", "--kernel", kernel, "--board", board])
+        small("correct", &["builtin:black", "-o", "folder", "--kernel", kernel, "--board", board])
     };
     refused(&folder, &on("mock,max-width=64", "linear"), "frames of 128 x 16 do not fit the board");
     refused(

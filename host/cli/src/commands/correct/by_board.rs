@@ -33,6 +33,7 @@ impl Job<'_> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
         let options = self.arguments.board.open_options(&context.settings)?;
         Board::with(candidate.link, &options, |board| {
+            // `Correction::run` asks this as well, but only once the folders are made.
             run::check_fit(&self.chosen.tables, &self.chosen.kernel, board.capabilities())?;
             self.kind.get_or_init(|| candidate.kind.confirmed_by(board.capabilities().nature));
             self.stream(board, places, &options.stop, progress)
