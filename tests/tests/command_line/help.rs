@@ -123,18 +123,36 @@ fn every_completion_script_knows_every_command() {
     }
 }
 
+/// The options whose value is written as words with `|` between them, and the words.
+fn options_of_words() -> Vec<(String, String)> {
+    let option = |line: &str| {
+        let written = line.strip_prefix("| `")?.split("` |").next()?;
+        let (option, value) = written.rsplit_once("--")?.1.split_once(['=', ' '])?;
+        let words = value.trim_end_matches(']').replace("\\|", " ").to_lowercase();
+        let is_of_words = words.contains(' ') && !words.contains("file");
+        is_of_words.then(|| (option.trim_end_matches('[').to_owned(), words))
+    };
+    halfrow(["commands"]).stdout.lines().filter_map(option).collect()
+}
+
 /// Beside those whose words the help lists by itself.
 #[test]
 fn a_shell_completes_the_words_that_an_option_takes() {
     let bash = halfrow(["completions", "bash"]).stdout;
-    for (option, words) in [
+    let written = options_of_words();
+    for known in ["fit", "nodes-every", "overwrite", "require-hardware"] {
+        assert!(written.iter().any(|(option, _)| option == known), "{known}: {written:?}");
+    }
+    let written = written.iter().map(|(option, words)| (option.as_str(), words.as_str()));
+    let listed = [
         ("phase", "grbg rggb bggr gbrg"),
         ("bits", "8 10 12"),
         ("raw", "u8 u16le mipi10 mipi12"),
         ("format", "pgm png tif dng raw"),
         ("only", "black white grey"),
         ("model-path", "reference scalar avx2 avx512"),
-    ] {
+    ];
+    for (option, words) in listed.into_iter().chain(written) {
         let case = format!("--{option})\n");
         let mut offered = bash.split(&case).skip(1);
         let is_offered =

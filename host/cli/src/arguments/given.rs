@@ -5,8 +5,10 @@
 
 use std::path::Path;
 
+use clap::builder::TypedValueParser;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use halfrow_program::choice::one_of;
 
 use halfrow::call::{self, VoidOption};
 
@@ -196,7 +198,11 @@ impl Given {
 }
 
 /// Reads the value of a yes-or-no option, which may also come from the environment.
-pub(crate) fn yes_or_no(text: &str) -> Result<bool, String> {
+pub(crate) fn yes_or_no() -> impl TypedValueParser<Value = bool> {
+    one_of(["yes", "no"], truth)
+}
+
+fn truth(text: &str) -> Result<bool, String> {
     match text.to_ascii_lowercase().as_str() {
         "1" | "yes" | "y" | "true" | "t" | "on" => Ok(true),
         "0" | "no" | "n" | "false" | "f" | "off" => Ok(false),

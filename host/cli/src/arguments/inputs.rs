@@ -31,7 +31,7 @@ pub(crate) struct InputArguments {
     raw: Option<RawLayout>,
     /// Crop pictures in colour about their centre, and scale them, to the tables' size
     #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
-    #[arg(env = "HALFROW_FIT", value_parser = yes_or_no)]
+    #[arg(env = "HALFROW_FIT", value_parser = yes_or_no(), hide_possible_values = true)]
     fit: Option<bool>,
 }
 

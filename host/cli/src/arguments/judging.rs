@@ -47,11 +47,11 @@ pub(crate) struct RunArguments {
     reconnect: Option<Option<f64>>,
     /// Replace what an earlier run has written
     #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
-    #[arg(env = "HALFROW_OVERWRITE", value_parser = yes_or_no)]
+    #[arg(env = "HALFROW_OVERWRITE", value_parser = yes_or_no(), hide_possible_values = true)]
     overwrite: Option<bool>,
     /// Refuse to judge anything but hardware
     #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
-    #[arg(env = "HALFROW_REQUIRE_HARDWARE", value_parser = yes_or_no)]
+    #[arg(env = "HALFROW_REQUIRE_HARDWARE", value_parser = yes_or_no(), hide_possible_values = true)]
     require_hardware: Option<bool>,
     /// Seed of built-in frames, gaps, link test and the frames that the board makes [default: 1]
     #[arg(long, value_name = "SEED", env = "HALFROW_SEED", value_parser = whole_number())]

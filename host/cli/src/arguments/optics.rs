@@ -63,7 +63,8 @@ pub(crate) struct LensArguments {
     #[arg(value_parser = any::<usize>("a whole number of entries"))]
     entries: Option<usize>,
     /// Columns from one node of a grid to the next, for a board that takes only 32 or only 64 [default: what suits the lens]
-    #[arg(long, value_name = "32|64", requires = "projection", value_parser = k_of_nodes)]
+    #[arg(long, value_name = "32|64", requires = "projection", hide_possible_values = true)]
+    #[arg(value_parser = one_of(["32", "64"], k_of_nodes))]
     nodes_every: Option<u32>,
     /// Radius of the image of 180 degrees, in pixels, instead of focal length and pixel pitch
     #[arg(long, value_name = "PIXELS", conflicts_with_all = ["focal_length", "pixel_pitch", "field_of_view"])]
