@@ -13,6 +13,3 @@ pub struct Progress {
 
 /// Who is told how far something has come, from time to time.
 pub type Told<'a> = &'a mut dyn FnMut(Progress);
-
-/// Tells nobody.
-pub fn untold(_: Progress) {}

@@ -38,9 +38,6 @@ pub struct Checked {
     pub faults: Vec<Fault>,
 }
 
-/// What is counted while records are read.
-const RUNS_READ: &str = "runs read";
-
 /// Checks everything that the station in `folder` has kept. Nothing is changed; runs may go on meanwhile. `told` is called for each
 /// run that is read.
 ///
@@ -168,7 +165,7 @@ impl Look<'_> {
         all.sort_by_key(|(id, _)| *id);
         let of = Some(all.len());
         for ((_, entry), done) in all.into_iter().zip(1..) {
-            told(Progress { what: RUNS_READ, done, of });
+            told(Progress { what: "entries read", done, of });
             let looked_at = match entry {
                 Entry::Final { run, hash } => self.at_final(run, hash),
                 Entry::Open(open) => self.at_open(open),

@@ -6,7 +6,7 @@ use halfrow::Verdict;
 use halfrow::result::sha256;
 
 use super::compare::compare;
-use super::{Checked, Fault, RUNS_READ, is_as_hashed};
+use super::{Checked, Fault, is_as_hashed};
 use crate::progress::{Progress, Told};
 use crate::record::Record;
 use crate::store::{KeptRun, Rebinding, Rebuilt, Snapshot, StoreError, TABLES};
@@ -83,7 +83,7 @@ impl Look<'_> {
                     }
                 }
             }
-            told(Progress { what: RUNS_READ, done: self.runs, of: None });
+            told(Progress { what: "runs read", done: self.runs, of: None });
         }
     }
 

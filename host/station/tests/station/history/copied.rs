@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use halfrow_station::kept::{backup, restore};
-use halfrow_station::progress::{Progress, untold};
+use halfrow_station::progress::Progress;
 use halfrow_station::store::{Folder, Store, StoreError};
 use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{End, Made, Run};
-use crate::common::{Did, check, program, query};
+use crate::common::{Did, check, program, query, untold};
 
 /// A FAIL with evidence, the path of that within a station's folder, and a place for copies.
 fn failed() -> (Made, PathBuf, TempDir) {
@@ -108,7 +108,7 @@ fn whoever_restores_a_copy_is_told_how_far_that_has_come() {
     let mut told = Vec::new();
     restore(&Folder::new(&copy), &to, &mut |progress| told.push(progress)).unwrap();
     let progress = |what, done, of| Progress { what, done, of: Some(of) };
-    let read = progress("runs read", 1, 1);
+    let read = progress("entries read", 1, 1);
     let copied = [1, 2].map(|done| progress("pieces of evidence copied", done, 2));
     assert_eq!(told, [read, copied[0], copied[1], read]);
 }

@@ -6,12 +6,11 @@ use std::path::Path;
 
 use halfrow_station::kept::{CopyError, backup, restore};
 use halfrow_station::plan::Plan;
-use halfrow_station::progress::untold;
 use halfrow_station::store::Folder;
 
 use super::commands::did;
 use super::made::{End, Made, Run};
-use crate::common::PLAN;
+use crate::common::{PLAN, untold};
 
 fn made() -> Made {
     let mut made = Made::new();

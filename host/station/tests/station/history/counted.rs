@@ -3,12 +3,12 @@
 use halfrow::Verdict;
 use halfrow_station::check::check;
 use halfrow_station::history::unit::units;
-use halfrow_station::progress::untold;
 use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
 use rusqlite::Connection;
 
 use super::generated::first_schema;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use crate::common::untold;
 
 #[test]
 fn a_database_is_brought_up_to_date_with_a_copy_beside_it_by_who_writes_alone() {

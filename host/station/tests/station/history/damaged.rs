@@ -4,13 +4,12 @@ use std::fs;
 
 use halfrow_station::check::{Fault, check};
 use halfrow_station::kept::{CopyError, backup, faults, restore};
-use halfrow_station::progress::untold;
 use halfrow_station::store::{Folder, Snapshot, Store};
 
 use super::commands::did;
 use super::made::{End, Made, Run};
 use super::put_back::killed;
-use crate::common::query;
+use crate::common::{query, untold};
 
 /// A station with a run of each verdict that counts, after these statements were executed in its database.
 fn changed(statements: &str) -> Made {

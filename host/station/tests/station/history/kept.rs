@@ -7,12 +7,12 @@ use std::path::Path;
 use halfrow_station::check::{Checked, check};
 use halfrow_station::history::runs::{Filter, Page, page};
 use halfrow_station::kept::{Copied, CopyError, Pruned, backup, prune, restore};
-use halfrow_station::progress::untold;
 use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
 use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, id};
+use crate::common::untold;
 
 /// A PASS, two FAILs with evidence, of which the later one shares one piece with the earlier, and an open run.
 fn made() -> Made {

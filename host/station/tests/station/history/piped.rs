@@ -4,12 +4,11 @@ use std::process::Command;
 
 use halfrow::result::sha256;
 use halfrow_station::kept::backup;
-use halfrow_station::progress::untold;
 use halfrow_station::store::Folder;
 
 use super::made::{End, Made, Run};
 use super::served::Served;
-use crate::common::{Did, program, replaced_by_pipe};
+use crate::common::{Did, program, replaced_by_pipe, untold};
 
 #[test]
 fn a_pipe_in_the_place_of_a_copy_s_evidence_is_told_and_nobody_waits_for_it() {

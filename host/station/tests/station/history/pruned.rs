@@ -3,11 +3,10 @@
 use std::process::Command;
 
 use halfrow_station::check::check;
-use halfrow_station::progress::untold;
 
 use super::made::{DAY_MS, End, HOUR_MS, Made, Run};
 use crate::clocks::Clocks;
-use crate::common::{Did, now_ms, program};
+use crate::common::{Did, now_ms, program, untold};
 
 /// Whatever is removed cannot be brought back. A time server may tell a wrong year, and so may whoever sets the clock.
 #[test]

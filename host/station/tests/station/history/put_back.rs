@@ -7,7 +7,6 @@ use std::process::Command;
 
 use halfrow_station::check::check;
 use halfrow_station::kept::backup;
-use halfrow_station::progress::untold;
 use halfrow_station::store::{Folder, Snapshot, Store};
 use rusqlite::Connection;
 use rusqlite::config::DbConfig;
@@ -15,7 +14,7 @@ use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{End, Made, Run};
-use crate::common::{Did, folder, program, query};
+use crate::common::{Did, folder, program, query, untold};
 
 /// Puts a file back as `mv`, `rsync` and most programs do: another file gets the name.
 fn renamed_to(from: &Path, to: &Folder) {

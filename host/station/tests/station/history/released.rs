@@ -9,7 +9,6 @@ use std::process::Command;
 use halfrow_station::check::check;
 use halfrow_station::history::Period;
 use halfrow_station::history::yields::{By, Wanted, yields};
-use halfrow_station::progress::untold;
 use halfrow_station::record::RunCause;
 use halfrow_station::store::{Change, Folder, Store};
 use rusqlite::Connection;
@@ -17,7 +16,7 @@ use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{BEGIN_MS, End, Made, Run};
-use crate::common::{change, program, query, reason};
+use crate::common::{change, program, query, reason, untold};
 
 /// Each format, and the name of its export.
 const FORMATS: [(&str, &str); 4] =

@@ -4,13 +4,12 @@ use halfrow_station::check::check;
 use halfrow_station::history::counts::Tally;
 use halfrow_station::history::pareto::{Of, pareto};
 use halfrow_station::history::yields::{By, Wanted, yields};
-use halfrow_station::progress::untold;
 use halfrow_station::record::RunCause;
 use halfrow_station::store::{Folder, Snapshot, Store};
 use rusqlite::Connection;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, SHIFT};
-use crate::common::query;
+use crate::common::{query, untold};
 
 const GOOD: &str = "CAT00001";
 const BAD: &str = "CAT00002";

@@ -8,7 +8,6 @@ use std::time::{Duration, SystemTime};
 
 use halfrow_station::check::{Fault, check};
 use halfrow_station::kept::{Copied, Pruned, Unnamed, backup, prune, prune_unnamed, restore};
-use halfrow_station::progress::untold;
 use halfrow_station::record::RunCause;
 use halfrow_station::run::{recover, recover_run};
 use halfrow_station::store::{Folder, SharedStore};
@@ -16,7 +15,7 @@ use serde_json::json;
 
 use super::commands::did;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, id};
-use crate::common::{Over, query};
+use crate::common::{Over, query, untold};
 use crate::runs::bench::{PLAN, Station};
 
 const HOUR: Duration = Duration::from_secs(3600);

@@ -6,12 +6,11 @@ use std::process::Command;
 
 use halfrow::result::sha256;
 use halfrow_station::kept::backup;
-use halfrow_station::progress::untold;
 use halfrow_station::store::Folder;
 
 use super::commands::did;
 use super::made::{End, Made, Run};
-use crate::common::{Did, program};
+use crate::common::{Did, program, untold};
 
 const OVERWRITTEN: &str = "cannot be read; put the file of that name";
 

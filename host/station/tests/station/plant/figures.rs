@@ -9,7 +9,7 @@ use halfrow_station::store::{Plant, Snapshot};
 
 use super::sent::send_as;
 use super::server::Server;
-use crate::common::{engel, reason};
+use crate::common::{engel, reason, untold};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 
 /// A year of two hundred stations, each with two hundred boards a day.
@@ -63,12 +63,12 @@ fn a_plant_takes_so_many_runs_a_second_and_grows_by_so_much() {
     println!("{}", vacuumed(&server, "VACUUM ANALYZE"));
     let mut plant = Plant::connect(&server.address()).unwrap();
     let begun = Instant::now();
-    let checked = check_plant(&Snapshot::of_plant(plant).unwrap(), &mut |_| ()).unwrap();
+    let checked = check_plant(&Snapshot::of_plant(plant).unwrap(), &mut untold).unwrap();
     assert!(checked.faults.is_empty() && checked.runs == count as usize, "{checked:?}");
     println!("plant check in {:.0} s", begun.elapsed().as_secs_f64());
     plant = Plant::connect(&server.address()).unwrap();
     let begun = Instant::now();
-    let removed = plant.prune(1, engel(&reason("the figure")), &mut |_| ()).unwrap();
+    let removed = plant.prune(1, engel(&reason("the figure")), &mut untold).unwrap();
     println!("plant prune of all runs: {removed} rows in {:.0} s", begun.elapsed().as_secs_f64());
     println!("{}", vacuumed(&server, "VACUUM (FULL, ANALYZE)"));
 }

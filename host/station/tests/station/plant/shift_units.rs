@@ -5,11 +5,12 @@ use halfrow_station::store::{Plant, Snapshot};
 
 use super::sent::send;
 use super::server::Server;
+use crate::common::untold;
 use crate::history::shift_units::{as_before, is_counted_right, made};
 
 fn is_right(server: &Server) {
     let now = Snapshot::of_plant(Plant::connect(&server.address()).unwrap()).unwrap();
-    let faults = check_plant(&now, &mut |_| ()).unwrap().faults;
+    let faults = check_plant(&now, &mut untold).unwrap().faults;
     assert!(faults.is_empty(), "{faults:?}");
     is_counted_right(&now);
 }

@@ -9,14 +9,13 @@ use std::time::Duration;
 
 use halfrow::link::{self, Link};
 use halfrow_station::check::check;
-use halfrow_station::progress::untold;
 use halfrow_station::record::DeviceSeen;
 use halfrow_station::run::recover_run;
 use halfrow_station::store::{Admission, Change, RebindError, SharedStore};
 
 use super::bench::{Did, PLAN, Station, program};
 use super::ends::with_link;
-use crate::common::{folder, reason};
+use crate::common::{folder, reason, untold};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 
 /// The mock board whose FPGA has this number.
