@@ -10,9 +10,9 @@ use halfrow::words::plain;
 use rand::{RngExt as _, rng};
 use serde_json::json;
 
+use super::Failure;
 use super::beginning::{Disk, Sending, SettingsFile, Signal, plant, recovered};
 use super::fetching::fetch_at_start;
-use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
 use crate::guard::guarded;
@@ -132,7 +132,7 @@ fn one_by_one(
         tracing::info!("the job {job} is on the board {}", claim.lease.board);
         match work.judge(claim, stop, &tries_no_more, &mut |_| ()) {
             Ok(judged) => {
-                print(&if arguments.json { document(&judged) } else { text(&judged) })?;
+                console::tell(&if arguments.json { document(&judged) } else { text(&judged) });
                 if let Some(error) = judged.not_out
                     && stop().is_none()
                 {

@@ -1,7 +1,7 @@
 //! Stations that take jobs: real processes, and real runs on mock boards.
 
 use std::cell::{Cell, RefCell};
-use std::fs;
+use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -72,6 +72,18 @@ fn jobs_are_judged_by_whoever_is_free_and_each_once() {
     assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
     let lanes = server.rows("SELECT DISTINCT lane FROM run JOIN job ON job.run_id = run.id ORDER BY lane");
     assert!(lanes.iter().all(|lane| lane[0].starts_with("shelf-")), "{lanes:?}");
+}
+
+/// A worker whose log is on a full disk would otherwise take no more jobs.
+#[test]
+fn a_station_whose_stdout_takes_nothing_goes_on_with_the_next_job() {
+    let (server, mut plant) = shared(1);
+    add(&mut plant, 2);
+    let (_folder, mut command) = work(&server, "12");
+    let full = File::options().write(true).open("/dev/full").unwrap();
+    let did = Did::from(command.stdout(full).output().unwrap());
+    assert!(did.code == Some(0) && did.complained.contains("the exit code stands"), "{did:?}");
+    assert_eq!(server.rows("SELECT state FROM job"), [["done"], ["done"]]);
 }
 
 #[test]
