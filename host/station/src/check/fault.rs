@@ -1,7 +1,5 @@
 //! What can be wrong.
 
-use std::error::Error as _;
-use std::iter;
 use std::path::PathBuf;
 
 use crate::record::{BlobError, RecordError};
@@ -17,7 +15,7 @@ pub enum Fault {
         said: String,
     },
     /// A record or an attachment of a run is missing, or does not match its hash.
-    #[error("evidence of run {run}: {source}")]
+    #[error("evidence of run {run} cannot be read as it was written")]
     Evidence {
         /// The run.
         run: String,
@@ -25,10 +23,10 @@ pub enum Fault {
         source: BlobError,
     },
     /// What no row names cannot be read, and may be the record of a run.
-    #[error("evidence that no row names: {0}")]
+    #[error("evidence that no row names cannot be read as it was written")]
     Piece(#[source] BlobError),
     /// A run's record matches its hash, but cannot be understood.
-    #[error("the record of run {run}: {source}")]
+    #[error("the record of run {run} cannot be understood")]
     Record {
         /// The run.
         run: String,
@@ -83,7 +81,7 @@ pub enum Fault {
         job: String,
     },
     /// A line of the audit does not fit the records.
-    #[error("the binding of line {id} of the audit does not fit the records: {source}")]
+    #[error("the binding of line {id} of the audit does not fit the records")]
     Audit {
         /// The line.
         id: String,
@@ -137,15 +135,6 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Its sentence, followed by those of its causes that are not in it, as the system's reason is not.
-    #[must_use]
-    pub fn told(&self) -> String {
-        let causes = iter::successors(self.source(), |&cause| cause.source()).map(ToString::to_string);
-        let with =
-            |told: String, cause: String| if told.contains(&cause) { told } else { told + ": " + &cause };
-        causes.fold(self.to_string(), with)
-    }
-
     /// Whether a table differs from what the records say.
     pub(crate) const fn is_of_table(&self) -> bool {
         matches!(self, Self::Differs { .. } | Self::Missing { .. } | Self::Surplus { .. })

@@ -13,6 +13,7 @@ use crate::check::{self, Checked, Fault};
 use crate::codes;
 use crate::console;
 use crate::exit::Exit;
+use crate::said::Said;
 use crate::store::Folder;
 
 /// Read everything that the station has kept, and say what is not as it was written
@@ -54,7 +55,7 @@ fn document(checked: &Checked, exit: Exit) -> Result<String, Failure> {
 
 /// A line for each fault, and one before those of the tables if they may only follow from the others.
 fn faults(Checked { unread, faults, .. }: &Checked) -> Vec<String> {
-    let mut lines: Vec<_> = faults.iter().map(|fault| format!("fault: {}", fault.told())).collect();
+    let mut lines: Vec<_> = faults.iter().map(|fault| format!("fault: {}", Said::of(fault))).collect();
     if let (1.., Some(place)) = (*unread, faults.iter().position(Fault::is_of_table)) {
         let (records, them) = (count(*unread, "record"), if *unread == 1 { "it" } else { "them" });
         let note = format!(

@@ -11,7 +11,6 @@ use super::looking::Data;
 use super::progress::teller;
 use super::why::{at_station, person};
 use super::{Failure, document, tell};
-use crate::check::Fault;
 use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
@@ -33,7 +32,7 @@ pub(super) struct Backup {
 pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
     let copied = kept::backup(&arguments.data.folder(), &arguments.to, &mut teller())?;
     let faults: Vec<_> = match kept::faults(&Folder::new(&arguments.to), &mut teller()) {
-        Ok(faults) => faults.iter().map(Fault::told).collect(),
+        Ok(faults) => faults.iter().map(|fault| Said::of(fault).to_string()).collect(),
         Err(error) => vec![Said::of(&error).to_string()],
     };
     let to = arguments.to.display();

@@ -237,7 +237,7 @@ fn refuse(folder: &Folder, named: &Folder, faults: &[Fault]) -> Result<(), CopyE
         Some(first) => Err(CopyError::Faulty {
             path: named.path().to_owned(),
             faults: faults.len(),
-            first: first.told().replace(&folder, &name),
+            first: Said::of(first).to_string().replace(&folder, &name),
         }),
     }
 }
