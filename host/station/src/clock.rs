@@ -14,6 +14,9 @@ use nix::time::{ClockId, clock_gettime};
 const HERE: &str = "/etc/localtime";
 const ZONES: &str = "/usr/share/zoneinfo";
 
+/// Milliseconds of a day of 24 hours.
+pub(crate) const DAY_MS: i64 = 86_400_000;
+
 /// Milliseconds since 1970, UTC; 0 if the clock is set before that.
 #[must_use]
 pub(crate) fn now_ms() -> i64 {

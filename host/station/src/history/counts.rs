@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use parking_lot::Mutex;
 
-use super::{DAY_MS, PlanName, count, plans};
+use super::{PlanName, count, plans};
+use crate::clock::DAY_MS;
 use crate::store::{DatabaseError, Snapshot, StoreError, statements, values};
 
 /// The longest pause between two counts.

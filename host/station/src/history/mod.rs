@@ -35,9 +35,6 @@ use serde::Serialize;
 use crate::plan::Plan;
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements};
 
-/// Milliseconds of a day.
-const DAY_MS: i64 = 86_400_000;
-
 /// The time in which runs began, in milliseconds since 1970, UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Period {

@@ -20,7 +20,8 @@ use serde::Serialize;
 
 use super::control::{Limits, limits};
 use super::rate::Rate;
-use super::{DAY_MS, Period, PlanName, count, plans};
+use super::{Period, PlanName, count, plans};
+use crate::clock::DAY_MS;
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements, values};
 
 /// What the lines of a yield are about, beside product and plan.
@@ -238,9 +239,8 @@ fn cells(
 /// The whole days of a period, and its parts before and after them.
 fn in_days(Period { from_ms, until_ms }: Period) -> (Range<i64>, [Period; 2]) {
     let first = from_ms.div_euclid(DAY_MS) + i64::from(from_ms.rem_euclid(DAY_MS) > 0);
-    let end = until_ms.div_euclid(DAY_MS);
     // A period without an end has no part of a day after it.
-    let end = if until_ms == i64::MAX { i64::MAX } else { end };
+    let end = if until_ms == i64::MAX { i64::MAX } else { until_ms.div_euclid(DAY_MS) };
     if first >= end {
         return (0..0, [Period { from_ms, until_ms }, Period { from_ms: 0, until_ms: 0 }]);
     }

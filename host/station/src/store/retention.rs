@@ -7,12 +7,9 @@ use std::sync::Arc;
 use super::audit::Deed;
 use super::database::values;
 use super::{Folder, Snapshot, Store, StoreError, generation, statements as sql};
-use crate::clock;
+use crate::clock::{self, DAY_MS};
 use crate::ids;
 use crate::record::UnnamedRecord;
-
-/// A day in milliseconds.
-pub(super) const DAY_MS: i64 = 86_400_000;
 
 impl Folder {
     /// Copies the database as it is at this moment to the new file `to`.

@@ -1,9 +1,9 @@
 //! Rows of old runs that serve only to be searched: the records have all of their content.
 
 use super::super::database::values;
-use super::super::retention::DAY_MS;
 use super::super::{By, Snapshot, StoreError, statements as sql};
 use super::Plant;
+use crate::clock::DAY_MS;
 use crate::ids;
 use crate::progress::{Progress, Told};
 
