@@ -4,10 +4,8 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use halfrow::words::plain_lines;
-
-use super::Failure;
 use super::beginning::{NoPlant, SettingsFile};
+use super::{Failure, tell_lines};
 use crate::console;
 use crate::exit::Exit;
 use crate::guard::guarded;
@@ -32,8 +30,7 @@ pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
         said.push(format!("{version}, number {number}{}", if is_new { NEW } else { "" }));
     }
     let named = published.plans.iter().zip(said).map(|(plan, said)| format!("{plan} {said}"));
-    console::tell(&plain_lines(named));
-    Ok(Exit::Pass)
+    Ok(tell_lines(named))
 }
 
 /// Fetches them when a station begins its work. If that fails, the station goes on with the copies that it has, unless

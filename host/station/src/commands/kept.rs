@@ -10,7 +10,7 @@ use serde_json::json;
 use super::looking::Data;
 use super::progress::teller;
 use super::why::{at_station, person};
-use super::{Failure, document, tell};
+use super::{Failure, document, tell, tell_lines};
 use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
@@ -117,8 +117,7 @@ pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
         let Unnamed { pieces, spools, bytes } = unnamed;
         let unnamed = json!({ "pieces": pieces, "spools": spools, "bytes": bytes });
         let rest = json!({ "old": old, "unnamed": unnamed });
-        console::tell(&document::text("prune", Exit::Pass, None, rest)?);
-        return Ok(Exit::Pass);
+        return Ok(tell_lines(document::text("prune", Exit::Pass, None, rest)?.lines()));
     }
     let Pruned { pieces, bytes } = old;
     let evidence = format!("{} of evidence {} removed", count(pieces, "piece"), verb(pieces, "were"));

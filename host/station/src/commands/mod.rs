@@ -42,6 +42,7 @@ use clap::{ArgAction, Parser, Subcommand};
 
 use document::IN_LINES;
 pub use document::{code, failure};
+use halfrow::words::plain_lines;
 
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
@@ -237,5 +238,11 @@ fn print(text: &str) -> Result<Exit, Failure> {
 /// would do it again.
 fn tell(line: &str) -> Exit {
     console::tell_line(line);
+    Exit::Pass
+}
+
+/// The same in several lines.
+fn tell_lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> Exit {
+    console::tell(&plain_lines(lines));
     Exit::Pass
 }

@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use halfrow::words::plain_lines;
 
-use super::Failure;
 use super::why::{Why, at_station};
-use crate::console;
+use super::{Failure, tell_lines};
 use crate::exit::Exit;
 use crate::store::{Change, Folder, RebindError, is_device};
 
@@ -46,11 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         || "is bound to the device of the next board that is judged under it".to_owned(),
         |device| format!("is bound to device {device}"),
     );
-    console::tell(&plain_lines([
-        format!("{serial} {from_now}"),
-        format!("audit     {}, by {operator}", bound.id),
-    ]));
-    Ok(Exit::Pass)
+    Ok(tell_lines([format!("{serial} {from_now}"), format!("audit     {}, by {operator}", bound.id)]))
 }
 
 impl From<RebindError> for Failure {
