@@ -89,13 +89,15 @@ impl Removed {
 
 impl Store {
     /// The moment so many days ago, in milliseconds since 1970, UTC. They are counted back from when the newest run began, if that is
-    /// earlier than now: a clock that is ahead makes nothing here older.
+    /// earlier than now: a clock that is ahead makes nothing here older, unless the newest run began by it.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
     pub(crate) fn days_ago_ms(&mut self, days: u32) -> Result<i64, StoreError> {
-        let newest_ms = self.newest_id()?.map_or(i64::MAX, |newest| ids::made_ms(&newest));
-        Ok(clock::now_ms().min(newest_ms).saturating_sub(DAY_MS * i64::from(days)))
+        let began_ms: Option<i64> =
+            self.read("to tell its newest run", |from| from.one(sql::NEWEST_RUN, &[], |row| row.get(0)))?;
+        let from_ms = clock::now_ms().min(began_ms.unwrap_or(i64::MAX));
+        Ok(from_ms.saturating_sub(DAY_MS * i64::from(days)))
     }
 
     /// The hashes of the attachments whose runs all ended before `before_ms`, and by their ids began before it.

@@ -131,6 +131,7 @@ statements! {
     pub(super) PASSED = "passed.sql";
     pub(super) OPEN_RUN_OF_UNIT = "open-run-of-unit.sql";
     pub(super) NEWEST_ID = "newest-id.sql";
+    pub(super) NEWEST_RUN = "newest-run.sql";
     pub(super) ADD_TO_OUTBOX = "add-to-outbox.sql";
     pub(super) UNENTERED = "unentered.sql";
     pub(super) ALL_TO_OUTBOX = "all-to-outbox.sql";
