@@ -39,7 +39,7 @@ pub struct Checked {
 }
 
 /// Checks everything that the station in `folder` has kept. Nothing is changed; runs may go on meanwhile. `told` is called for each
-/// run that is read.
+/// run, and each changed binding, that is read.
 ///
 /// # Errors
 /// [`StoreError`] when the database cannot be read at all.

@@ -93,7 +93,7 @@ pub fn backup(from: &Folder, to: &Path, told: Told<'_>) -> Result<Copied, CopyEr
 
 /// Makes a station's new folder `to` from the copy in `from`, if all of it is as it was written. A copy of an older
 /// program's is brought up to date on the way, and keeps its old database beside the new one; `from` stays as it is.
-/// `told` is called for each run that is read and each piece that is copied.
+/// `told` is called for each entry that is checked and each piece that is copied.
 ///
 /// # Errors
 /// [`CopyError`]
