@@ -27,7 +27,7 @@ pub struct Drift {
     pub elsewhere: Rate,
     /// The chance of so great a difference between stations that are alike; `None` where too few units were judged to tell.
     pub chance: Option<f64>,
-    /// Whether that is too small to be taken for chance, given how many stations are compared under all plans.
+    /// Whether that is too small to be taken for chance, given how many stations can be compared under all plans.
     pub is_marked: bool,
 }
 
@@ -41,17 +41,30 @@ pub fn drifts(lines: &[Yield]) -> Vec<Drift> {
         }
     }
     plans.retain(|_, stations| stations.len() > 1);
-    let comparisons = plans.values().map(Vec::len).sum();
-    plans.into_iter().flat_map(|(plan, stations)| of_plan(plan, &stations, comparisons)).collect()
+    let mut drifts: Vec<_> =
+        plans.into_iter().flat_map(|(plan, stations)| of_plan(plan, &stations)).collect();
+    // What could not be marked anyway is no comparison.
+    let comparisons = drifts.iter().filter(|drift| drift.chance.is_some()).count();
+    for drift in &mut drifts {
+        drift.is_marked = drift.chance.is_some_and(|chance| chance < BY_CHANCE / comparisons as f64);
+    }
+    drifts
 }
 
-fn of_plan(plan: &PlanName, stations: &[(&String, Rate)], comparisons: usize) -> Vec<Drift> {
+/// The stations of this plan, none of them marked yet.
+fn of_plan(plan: &PlanName, stations: &[(&String, Rate)]) -> Vec<Drift> {
     let all = stations.iter().fold((0, 0), |(count, of), (_, rate)| (count + rate.count, of + rate.of));
     let drift = |(station, here): &(&String, Rate)| {
         let elsewhere = Rate::new(all.0 - here.count, all.1 - here.of);
         let chance = chance(here, &elsewhere);
-        let is_marked = chance.is_some_and(|chance| chance < BY_CHANCE / comparisons as f64);
-        Drift { plan: plan.clone(), station: (*station).clone(), here: *here, elsewhere, chance, is_marked }
+        Drift {
+            plan: plan.clone(),
+            station: (*station).clone(),
+            here: *here,
+            elsewhere,
+            chance,
+            is_marked: false,
+        }
     };
     stations.iter().map(drift).collect()
 }

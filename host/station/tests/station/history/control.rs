@@ -87,6 +87,24 @@ fn with_more_plans_on_a_page_a_station_needs_more_to_be_marked() {
     assert_eq!([marked(&["a"]), marked(&["a", "b"])], [2, 0]);
 }
 
+/// Of 1000 units each, 970 and 990 passed: p = 0.0013, which is less than 0.01 / 2, and more than 0.01 / 62.
+#[test]
+fn plans_with_too_few_units_to_tell_hide_no_station_that_judges_otherwise() {
+    let pair = |name: &str, [one, other]: [Rate; 2]| {
+        [("1", one), ("2", other)].map(|(station, rate)| {
+            let line = line(station, rate);
+            Yield { plan: PlanName { plan: name.to_owned(), ..line.plan.clone() }, ..line }
+        })
+    };
+    let few = (0..30).flat_map(|number| pair(&format!("few {number}"), [Rate::new(2, 3), Rate::new(3, 3)]));
+    let lines: Vec<_> =
+        pair("many", [Rate::new(970, 1000), Rate::new(990, 1000)]).into_iter().chain(few).collect();
+    let found = drifts(&lines);
+    let marked: Vec<_> =
+        found.iter().filter(|drift| drift.is_marked).map(|drift| drift.plan.plan.as_str()).collect();
+    assert_eq!((found.len(), marked), (62, vec!["many", "many"]));
+}
+
 #[test]
 fn of_few_units_or_one_station_nothing_is_told() {
     let few = drifts(&[line("1", Rate::new(20, 30)), line("2", Rate::new(900, 1000))]);
