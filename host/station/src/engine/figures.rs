@@ -62,7 +62,7 @@ impl Histogram {
 /// What was counted since the engine began.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figures {
-    /// How long the runs of each plan took, by lane; without those of the mock that checks a shift.
+    /// How long the runs of each plan took, by lane; without those of what checks a shift.
     pub runs: BTreeMap<(PlanName, String), Histogram>,
     /// How long it took to save a result, from the end of its lane until it was read back.
     pub commits: Histogram,

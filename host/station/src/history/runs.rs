@@ -100,6 +100,7 @@ pub struct RunLine {
     /// The result in one sentence.
     pub headline: Option<String>,
     /// Which judgement of the unit under plans of this name it is, counted from 1; an ERROR has the number of the next one.
+    /// 0 of what checks a shift, and of a run whose job was cancelled or claimed again.
     pub nth: i64,
     /// Whether there is a waiver.
     pub waived: bool,
