@@ -4,12 +4,13 @@ WITH ours AS MATERIALIZED (
   SELECT product, kind, serial, target, {free} AND NOT {waited_for} AS is_free, {is_well} AS is_well FROM board
   WHERE serial <> '' AND station IN ('', $1) AND out IS NULL
 ),
--- For each plan: by these plans no unit that passed is judged again unasked.
+-- For each plan: by these plans no unit that passed is judged again unasked, and one that checks shifts by the plan never is.
 fit AS MATERIALIZED (
   SELECT job.plan_sha256, board.product, board.kind, board.serial, board.is_free, board.is_well,
-    job.plan_sha256 <> ALL (string_to_array($2, ' ')) OR {last_verdict} IS DISTINCT FROM 'PASS' AS is_any
-  FROM ours AS board, unnest(string_to_array($3, ' ')) AS job (plan_sha256)
-  WHERE NOT $4::text::jsonb ? {pairing}
+    (job.plan_sha256 <> ALL (string_to_array($2, ' ')) OR {last_verdict} IS DISTINCT FROM 'PASS')
+      AND NOT $3::text::jsonb ? {reference} AS is_any
+  FROM ours AS board, unnest(string_to_array($4, ' ')) AS job (plan_sha256)
+  WHERE NOT $5::text::jsonb ? {pairing}
 ),
 kinds AS MATERIALIZED (
   SELECT plan_sha256, product, kind FROM fit
@@ -21,8 +22,8 @@ SELECT id FROM job
 WHERE state IN ('waiting', 'claimed')
   AND (state = 'waiting' OR {is_lapsed})
   AND NOT {is_spent}
-  AND plan_sha256 = ANY (string_to_array($3, ' '))
-  AND string_to_array(needs, ' ') <@ string_to_array($5, ' ')
+  AND plan_sha256 = ANY (string_to_array($4, ' '))
+  AND string_to_array(needs, ' ') <@ string_to_array($6, ' ')
   AND (
     (serial <> '' AND (plan_sha256, product, serial) IN (SELECT plan_sha256, product, serial FROM fit WHERE is_free))
     OR (serial = '' AND (plan_sha256, product, kind) IN (SELECT plan_sha256, product, kind FROM kinds))

@@ -165,11 +165,16 @@ fn worker(settings: &Settings) -> Result<Worker, Failure> {
     let work = settings.work.as_ref().ok_or_else(|| Failure::call(NoWork))?;
     let plans = || work.plans.iter().filter_map(|place| Some(&settings.plans.get(*place)?.plan));
     let hashes = |plan: &Plan| plan.sha256.clone();
+    let references = |plan: &Plan| {
+        let serials = plan.production.references().into_iter();
+        serials.map(|serial| format!("{} {serial}", plan.sha256)).collect::<Vec<_>>()
+    };
     Ok(Worker {
         holder: format!("{} {:016x}", settings.name, rng().random::<u64>()),
         station: settings.name.clone(),
         plans: plans().map(hashes).collect(),
         once: plans().filter(|plan| plan.again != Again::Allow).map(hashes).collect(),
+        references: plans().flat_map(references).collect(),
         has: work.has.clone(),
         unfit: Vec::new(),
     })

@@ -14,7 +14,7 @@ pub(super) const SCHEMAS: [&str; 8] = [
 ];
 
 /// Words of a plant's statements about jobs and boards. Earlier ones use later ones.
-pub(super) const OF_PLANT: [(&str, &str); 13] = [
+pub(super) const OF_PLANT: [(&str, &str); 14] = [
     // How it stands with a job. The end of its lease is not written down before its next claim.
     (
         "{job_state}",
@@ -43,6 +43,8 @@ pub(super) const OF_PLANT: [(&str, &str); 13] = [
     ),
     // The pairing (`Claim::pairing`) of a job's plan with it.
     ("{pairing}", "concat_ws(' ', job.plan_sha256, board.target, board.serial)"),
+    // The pair (`Worker::references`) of a job's plan with its unit.
+    ("{reference}", "concat_ws(' ', job.plan_sha256, board.serial)"),
     // The last judgement of its unit by that plan.
     (
         "{last_verdict}",

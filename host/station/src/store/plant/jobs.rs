@@ -108,6 +108,8 @@ pub struct Worker {
     pub plans: Vec<String>,
     /// The hashes of those by which a unit that passed is not judged again unless somebody means this very unit.
     pub once: Vec<String>,
+    /// Its plans with the units that check shifts by them, each pair as one text. No job for any board of a kind is for those.
+    pub references: Vec<String>,
     /// What it has that jobs may need.
     pub has: Vec<String>,
     /// What it cannot judge: plans with boards, each pair as one text.
@@ -269,16 +271,16 @@ impl Plant {
 
 /// Claims a job and its board, or neither: the rows are locked until the transaction ends.
 fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, DatabaseError> {
-    let Worker { holder, station, plans, once, has, unfit } = worker;
+    let Worker { holder, station, plans, once, references, has, unfit } = worker;
     shorten(to)?;
     to.execute(sql::EXHAUSTED_JOBS, &[])?;
     let [once, plans, has] = [once, plans, has].map(|words| words.join(" "));
-    let unfit = serde_json::to_string(unfit)?;
-    let id: Option<String> =
-        to.first(sql::CLAIMABLE_JOB, values![station, &once, &plans, &unfit, &has], |row| row.get(0))?;
+    let [references, unfit] = [serde_json::to_string(references)?, serde_json::to_string(unfit)?];
+    let of = values![station, &once, &references, &plans, &unfit, &has];
+    let id: Option<String> = to.first(sql::CLAIMABLE_JOB, of, |row| row.get(0))?;
     let Some(id) = id else { return Ok(None) };
-    let board: Option<String> =
-        to.first(sql::BOARD_OF_JOB, values![&id, station, &once, &unfit], |row| row.get(0))?;
+    let of = values![&id, station, &once, &references, &unfit];
+    let board: Option<String> = to.first(sql::BOARD_OF_JOB, of, |row| row.get(0))?;
     // Somebody else was quicker.
     let Some(board) = board else { return Ok(None) };
     let lease = hold(to, &board, holder)?;

@@ -88,6 +88,7 @@ pub(crate) fn worker(station: &str) -> Worker {
         station,
         plans: vec![plan().sha256],
         once: Vec::new(),
+        references: Vec::new(),
         has: Vec::new(),
         unfit: Vec::new(),
     }
