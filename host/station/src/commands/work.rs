@@ -180,24 +180,23 @@ fn worker(settings: &Settings) -> Result<Worker, Failure> {
     })
 }
 
-fn document(JobResult { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. }: &JobResult) -> String {
-    let (run, ended) = (&saved.record.run, &saved.record.conclusion);
+fn document(JobResult { claim, saved, is_sent, counts, is_superseded, .. }: &JobResult) -> String {
+    let (Claim { job, lease, .. }, run, ended) = (claim, &saved.record.run, &saved.record.conclusion);
     json!({
         "job": job, "board": lease.board, "serial": run.serial, "run": run.id, "verdict": ended.verdict,
         "headline": ended.headline, "at_plant": is_sent, "counts": counts,
+        "superseded": is_superseded,
     })
     .to_string()
 }
 
-fn text(JobResult { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. }: &JobResult) -> String {
-    let (run, ended) = (&saved.record.run, &saved.record.conclusion);
-    let note = match (is_sent, counts) {
+fn text(JobResult { claim, saved, is_sent, is_superseded, .. }: &JobResult) -> String {
+    let (Claim { job, lease, .. }, run, ended) = (claim, &saved.record.run, &saved.record.conclusion);
+    let note = match (is_sent, is_superseded) {
         (false, _) => "; the plant does not have it yet",
-        (true, Some(false)) if saved.record.is_of_reference() => {
-            "; it is in no yield, for its unit checks shifts"
-        }
-        (true, Some(false)) => "; it does not count, for the job was cancelled or claimed again",
+        (true, Some(true)) => "; it does not count, for the job was cancelled or claimed again",
         (true, _) if ended.verdict == Verdict::Error => "; the job is given back",
+        (true, _) if saved.record.is_of_reference() => "; it is in no yield, for its unit checks shifts",
         (true, _) => "",
     };
     plain(&format!(

@@ -27,7 +27,7 @@ use crate::history::PlanName;
 use crate::labgrid::LaneBoard;
 use crate::outbox::{Sent, awaited};
 use crate::plan::Plan;
-use crate::record::JobClaim;
+use crate::record::{JobClaim, Record};
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
@@ -55,8 +55,10 @@ pub struct JobResult {
     pub is_sent: bool,
     /// Why the plant, which is there, does not take it, if it does not.
     pub refused: Option<String>,
-    /// Whether it counts there, because its job was neither cancelled nor claimed again. None until the plant has it and says so.
+    /// Whether it counts there: not if it is superseded, or of a unit that checks shifts. None until the plant has it and says so.
     pub counts: Option<bool>,
+    /// Whether its job was cancelled or claimed again before it came to the plant. None until the plant has it and says so.
+    pub is_superseded: Option<bool>,
     /// Why a board is not out that a process which cannot be killed may still have, if one may.
     pub not_out: Option<StoreError>,
 }
@@ -149,10 +151,11 @@ impl Work<'_> {
         // The plant ends a job as it takes its run, which the outbox may not have noted yet.
         let is_over = matches!(holding.lost(), Some(Lost::Taken { .. }));
         let counts = if is_over || matches!(sent, Sent::Yes) { self.counts(run) } else { None };
+        let is_superseded = self.is_superseded(&claim, &saved.record, counts);
         let is_sent = counts.is_some() || matches!(sent, Sent::Yes);
         let refused = if let Sent::Refused(said) = sent { Some(said.to_string()) } else { None };
         holding.end();
-        Ok(JobResult { claim, is_sent, refused, counts, not_out, saved })
+        Ok(JobResult { claim, is_sent, refused, counts, is_superseded, not_out, saved })
     }
 
     /// Gives back a job that came to no run. One whose unit must not be judged ends here; one whose board cannot be judged goes to
@@ -313,6 +316,15 @@ impl Work<'_> {
     /// Whether a run that the plant has counts there.
     fn counts(&self, run: &str) -> Option<bool> {
         self.plant.ask(|plant| plant.counts(run)).ok()?
+    }
+
+    /// Whether the run of the claim is superseded, which `counts` tells except of a unit that checks shifts.
+    fn is_superseded(&self, claim: &Claim, record: &Record, counts: Option<bool>) -> Option<bool> {
+        let counts = counts?;
+        if counts || !record.is_of_reference() {
+            return Some(!counts);
+        }
+        self.plant.ask(|plant| plant.is_superseded(claim, &record.run.id)).ok()
     }
 }
 

@@ -65,7 +65,8 @@ fn settles_job(to: &mut dyn Database, record: &Record) -> Result<bool, DatabaseE
     };
     // A job that is not here, because it is another plant's or was lost, supersedes nothing; nor does one that waits for its next
     // claim, or was put back to before this one.
-    Ok(changed == 1 || to.first(sql::SUPERSEDING_JOB, values![id, *fence], |_| Ok(()))?.is_none())
+    let of = values![id, *fence, &record.run.id];
+    Ok(changed == 1 || to.first(sql::SUPERSEDING_JOB, of, |_| Ok(()))?.is_none())
 }
 
 /// Enters the plan of a job, which need not have a run yet.

@@ -267,6 +267,18 @@ impl Plant {
         })?;
         Ok(nth.map(|nth| nth > 0))
     }
+
+    /// Whether the job was cancelled or claimed again after this claim, or ended by another run than this one.
+    ///
+    /// # Errors
+    /// Like [`Self::add_jobs`].
+    pub fn is_superseded(&mut self, claim: &Claim, run: &str) -> Result<bool, StoreError> {
+        let of = values![&claim.job, claim.fence, run];
+        let found = self.carry_out("to tell whether a run is superseded", |database| {
+            database.first(sql::SUPERSEDING_JOB, of, |_| Ok(()))
+        })?;
+        Ok(found.is_some())
+    }
 }
 
 /// Claims a job and its board, or neither: the rows are locked until the transaction ends.

@@ -6,20 +6,23 @@ use std::sync::mpsc;
 use halfrow::Verdict;
 use halfrow::verdict::StoppedBy;
 use halfrow_station::outbox::{Outbox, PlantSink, Sink, Undelivered};
+use halfrow_station::plan::Plan;
 use halfrow_station::run::Stage;
 use halfrow_station::said::{Said, Saying};
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{Parcel, SINK_OF_PLANT};
 
-use super::{at_work, judged, settings, with_a_job};
+use super::shift::{checked, good, prepared};
+use super::{at_work, job, judged, plan, settings, shared, with_a_job};
 use crate::common::{engel, folder, program, reason};
 
-/// Whether the plant has the run of a job, and whether the run counts there, if the outbox `sends`, and if a person cancels the
-/// job while the result is being saved.
-fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
-    let (server, mut plant, id) = with_a_job();
+/// Whether the plant has the run of a job by this plan, and whether the run counts there and is superseded, if the outbox `sends`,
+/// and if a person cancels the job while the result is being saved.
+fn became(plan: &Plan, sends: bool, is_cancelled: bool) -> (bool, Option<bool>, Option<bool>) {
+    let (server, mut plant) = shared(1);
+    let id = plant.add_jobs(&job(plan, &good()), 1).unwrap().remove(0);
     let folder = folder();
-    let settings = Settings::load_without_lanes(&settings(&server, folder.path(), "12")).unwrap();
+    let settings = Settings::load_without_lanes(&prepared(&server, folder.path(), plan)).unwrap();
     let work = at_work(&settings, program().to_owned());
     let (origin, kept) = work.store.with(|store| (store.origin().unwrap(), store.folder().clone()));
     let sink = PlantSink::new(server.address(), settings.introduction(origin), kept);
@@ -37,14 +40,22 @@ fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
     let judged = work.judge(claim, &stop, &stop, &mut heard).unwrap();
     outbox.close();
     assert_eq!(judged.saved.record.conclusion.verdict, Verdict::Pass);
-    (judged.is_sent, judged.counts)
+    (judged.is_sent, judged.counts, judged.is_superseded)
 }
 
 #[test]
 fn whether_a_run_counts_is_told_once_the_plant_has_it() {
-    assert_eq!(became(true, false), (true, Some(true)));
-    assert_eq!(became(true, true), (true, Some(false)), "its job was cancelled");
-    assert_eq!(became(false, false), (false, None), "nobody knows yet");
+    let became = |sends, is_cancelled| became(&plan(), sends, is_cancelled);
+    assert_eq!(became(true, false), (true, Some(true), Some(false)));
+    assert_eq!(became(true, true), (true, Some(false), Some(true)), "its job was cancelled");
+    assert_eq!(became(false, false), (false, None, None), "nobody knows yet");
+}
+
+#[test]
+fn whether_a_job_was_cancelled_is_told_of_a_unit_that_checks_shifts_too() {
+    let became = |is_cancelled| became(&checked("allow"), true, is_cancelled);
+    assert_eq!(became(false), (true, Some(false), Some(false)));
+    assert_eq!(became(true), (true, Some(false), Some(true)));
 }
 
 /// A plant that has what it is given before the outbox hears of that.

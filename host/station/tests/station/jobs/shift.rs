@@ -9,6 +9,7 @@ use halfrow_station::plan::Plan;
 use halfrow_station::run::Stage;
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{SharedBoard, Wanted};
+use serde_json::Value;
 
 use super::{any, at_work, board, job, settings, shared, states};
 use crate::common::{Did, PLAN, did_in, folder, program};
@@ -105,4 +106,24 @@ fn a_job_for_any_board_waits_for_a_product_while_only_units_that_check_shifts_ar
         assert_eq!(server.rows(JUDGED), [["shelf-0", "PASS"], ["shelf-3", "PASS"]], "{again}");
         assert_eq!(states(&server), [["done", "1"], ["done", "1"]], "{again}");
     }
+}
+
+#[test]
+fn of_a_unit_that_checks_shifts_it_is_told_that_its_job_is_given_back() {
+    let (server, mut plant) = shared(0);
+    assert!(plant.share(&dead(), "engel").unwrap());
+    let (folder, plan) = (folder(), checked("allow"));
+    prepared(&server, folder.path(), &plan);
+    plant.add_jobs(&job(&plan, &good()), 1).unwrap();
+    let did = worked(folder.path(), &[]);
+    assert_eq!(did.said.matches("board shelf-0; the job is given back)").count(), 5, "{did:?}");
+    assert_eq!(did.said.lines().count(), 5, "{did:?}");
+    plant.add_jobs(&job(&plan, &good()), 1).unwrap();
+    let did = worked(folder.path(), &["--json"]);
+    let first: Value = serde_json::from_str(did.said.lines().next().unwrap()).unwrap();
+    assert_eq!([&first["counts"], &first["superseded"]], [false, false], "{did:?}");
+    assert!(plant.share(&board(0, "mock"), "engel").unwrap());
+    plant.add_jobs(&job(&plan, &good()), 1).unwrap();
+    let did = worked(folder.path(), &[]);
+    assert!(did.said.ends_with("; it is in no yield, for its unit checks shifts)\n"), "{did:?}");
 }
