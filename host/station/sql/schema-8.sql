@@ -41,3 +41,6 @@ WHERE again.nth >= 2 AND again.verdict <> 'ERROR' AND NOT EXISTS (
 
 -- What the other runs failed by stays as it was counted: a plant may have removed their steps since.
 DELETE FROM failure WHERE run_id IN (SELECT id FROM run WHERE nth = 0);
+
+-- Who judged a unit last in a lane, however often it is judged.
+CREATE INDEX run_judged ON run (unit_id, plan_sha256, station, lane, id) WHERE verdict IN ('PASS', 'FAIL');

@@ -18,9 +18,6 @@ fn no_question_of_a_run_takes_longer_the_more_was_ever_kept() {
     let newest =
         ["SEARCH run USING COVERING INDEX sqlite_autoindex_run_1", "SEARCH audit USING INDEX audit_rebind"];
     assert_eq!(looks(statements::NEWEST_ID, &[]), newest);
-    // A lane has judged many units, and each of them only now and then.
-    let of_unit = ["SEARCH run USING INDEX run_unit (unit_id=?)"];
-    assert_eq!(looks(statements::LAST_JUDGEMENT, values!["12", "1", "plan", "CAM", "S1"]), of_unit);
 }
 
 /// A restore that failed removes the folder that it made, with the lock, on which a start may wait. With the lock of a file that has

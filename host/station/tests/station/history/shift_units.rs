@@ -83,7 +83,8 @@ pub(crate) fn as_before() -> String {
         WHERE earlier.unit_id = run.unit_id AND theirs.name = ours.name AND earlier.id < run.id
           AND earlier.verdict <> 'ERROR')
         WHERE unit_id IN (SELECT id FROM unit WHERE serial NOT LIKE 'HR:MOCK:%');
-        DELETE FROM day_count; DELETE FROM retest; DELETE FROM failure; DELETE FROM schema_version WHERE n = 8;";
+        DELETE FROM day_count; DELETE FROM retest; DELETE FROM failure; DELETE FROM schema_version WHERE n = 8;
+        DROP INDEX run_judged;";
     // The second schema counted what was there.
     let schema = include_str!("../../../sql/schema-2.sql");
     let counted = schema.split_inclusive(";\n").filter(|part| part.contains("INSERT INTO")).map(|counted| {
@@ -108,4 +109,19 @@ fn a_store_in_which_they_were_counted_is_counted_anew() {
     assert_eq!(numbers(&folder, GOOD), ["0", "0", "0"]);
     assert_eq!(numbers(&folder, BAD), ["1", "0", "0", "2"]);
     assert!(folder.path().join("station.before-8.db").is_file());
+}
+
+/// A unit that checks shifts is judged in every lane and every shift, and each lane asks for its last judgement before every run.
+#[test]
+fn the_last_judgement_of_such_a_unit_is_found_without_reading_those_before_it() {
+    let folder = made().closed();
+    let database = Connection::open(folder.path().join("station.db")).unwrap();
+    let text = format!("EXPLAIN QUERY PLAN {}", include_str!("../../../sql/last-judgement.sql"));
+    let mut statement = database.prepare(&text).unwrap();
+    let of = ["12", "1", "plan", "CAM-T", GOOD];
+    let looks = statement.query_map(of, |row| row.get::<_, String>(3)).unwrap();
+    let looks: Vec<_> = looks.map(Result::unwrap).collect();
+    let of_lane = "SEARCH run USING INDEX run_judged (unit_id=? AND plan_sha256=? AND station=? AND lane=?)";
+    assert!(looks.iter().any(|look| look == of_lane), "{looks:?}");
+    assert!(!looks.iter().any(|look| look.contains("SCAN") || look.contains("TEMP B-TREE")), "{looks:?}");
 }

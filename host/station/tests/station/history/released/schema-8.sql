@@ -11,7 +11,7 @@ INSERT INTO schema_version (n, sha256, applied_ms) VALUES (4, 'fb2be50abeee58806
 INSERT INTO schema_version (n, sha256, applied_ms) VALUES (5, '0445e000d0a29583b4f79c5008cac9c17d3d070e034817b2259071a558079d87', 1793491200000);
 INSERT INTO schema_version (n, sha256, applied_ms) VALUES (6, 'eccc7db7598979156ec2abf199a0d2c58af8e6fc1121551a5357d8a9369610b8', 1793491200000);
 INSERT INTO schema_version (n, sha256, applied_ms) VALUES (7, 'fbaefaf28fefffbd86523ffa6465aa57e329ae085c18df3f0ceda964bc172739', 1793491200000);
-INSERT INTO schema_version (n, sha256, applied_ms) VALUES (8, 'a84913f1915e12e4ab23d0cf5036836e4c4e45823feb27214c62788c59a67f14', 1793491200000);
+INSERT INTO schema_version (n, sha256, applied_ms) VALUES (8, 'a87148ae4fe52133851ad4c8cbaf69277b2cf4390889ac01b8c267fe2b0e0970', 1793491200000);
 CREATE TABLE plan (
   sha256 TEXT PRIMARY KEY CHECK (length(sha256) = 64),
   name TEXT NOT NULL,
@@ -382,3 +382,4 @@ CREATE INDEX binding_unit ON binding (unit_id, from_ms DESC, id DESC);
 CREATE INDEX binding_device ON binding (device);
 CREATE INDEX audit_rebind ON audit (subject, at_ms) WHERE act = 'rebind';
 CREATE INDEX outbox_due ON outbox (sink, subject) WHERE done_ms IS NULL AND dead_ms IS NULL;
+CREATE INDEX run_judged ON run (unit_id, plan_sha256, station, lane, id) WHERE verdict IN ('PASS', 'FAIL');
