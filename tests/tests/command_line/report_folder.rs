@@ -208,16 +208,47 @@ fn a_disk_that_is_full_before_the_run_is_no_wrong_call() {
     }
 }
 
+/// What must be found out of an earlier report before it may be replaced.
+#[test]
+fn an_earlier_report_that_the_system_fails_to_look_at_is_no_wrong_call() {
+    let folder = Folder::new();
+    let call = small("verify", &["--report", "out", "--overwrite"]);
+    assert_eq!(folder.halfrow(call.clone()).code, Some(0));
+    let earlier = folder.text("out/report.json");
+    let (only_out, only_json) = ("-P out -e inject=openat", "-P out/report.json -e inject=openat");
+    let cases = [
+        (only_out, "EIO", 3),
+        (only_out, "EMFILE", 3),
+        (only_out, "EACCES", 2),
+        (only_json, "EIO", 3),
+        (only_json, "ENFILE", 3),
+        (only_json, "EACCES", 2),
+        ("-P out/report.json -e inject=read", "EIO", 3),
+        ("-e inject=rename", "EBUSY", 2),
+    ];
+    for (place, error, code) in cases {
+        let line = format!("exec strace -f -qq -o /dev/null {place}:error={error} \"$@\"");
+        let ended = finish(&mut folder.by_shell(&line, call.clone()));
+        assert_eq!(ended.code, Some(code), "{place}: {error}: {ended:?}");
+        assert_eq!(folder.names("."), ["out"], "{place}: {error}: {ended:?}");
+        assert!(folder.text("out/report.json") == earlier, "{place}: {error}: {ended:?}");
+    }
+}
+
 /// What was written aside has a hidden name.
 #[test]
 fn a_run_without_descriptors_leaves_nothing_in_the_folder() {
     for descriptors in 4..14 {
         let folder = Folder::new();
-        let line = format!("ulimit -n {descriptors}; exec \"$@\"");
-        let ended = finish(&mut folder.by_shell(&line, small("verify", &["--report", "out"])));
-        assert_ne!(ended.code, Some(2), "{descriptors}: {ended:?}");
-        let left: Vec<_> = folder.names(".").into_iter().filter(|name| name != "out").collect();
-        assert_eq!(left, [""; 0], "{descriptors}: {ended:?}");
+        for more in [&["--report", "out"][..], &["--report", "earlier", "--overwrite"]] {
+            folder.halfrow(small("verify", &["--report", "earlier", "--overwrite"])).succeeded();
+            let line = format!("ulimit -n {descriptors}; exec \"$@\"");
+            let ended = finish(&mut folder.by_shell(&line, small("verify", more)));
+            assert_ne!(ended.code, Some(2), "{descriptors}: {ended:?}");
+            let left: Vec<_> =
+                folder.names(".").into_iter().filter(|name| !["out", "earlier"].contains(&&**name)).collect();
+            assert_eq!(left, [""; 0], "{descriptors}: {ended:?}");
+        }
     }
 }
 

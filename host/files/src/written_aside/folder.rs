@@ -67,9 +67,10 @@ impl AsideFolder {
             return Ok(());
         }
         // A folder is never renamed to one that has something in it. What may not be renamed at all is refused before that.
-        let something = tempfile::NamedTempFile::new_in(self.path())?;
+        let something = self.path().join("something");
+        File::create_new(&something)?;
         let tried = fs::rename(&self.target, self.path());
-        something.close()?;
+        fs::remove_file(something)?;
         let refusals = [CrossesDevices, PermissionDenied, ReadOnlyFilesystem, ResourceBusy];
         match tried {
             Err(error) if refusals.contains(&error.kind()) => Err(error),
@@ -88,11 +89,11 @@ impl AsideFolder {
         Ok(())
     }
 
-    /// Renames it into its place. What is there is removed, unless `foreign` returns a reason why it may not be.
+    /// Renames it into its place. What is there is removed, unless `foreign` returns a reason why it may not be, or cannot look.
     ///
     /// # Errors
     /// [`Misplaced`], with everything as before.
-    pub fn replace(self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
+    pub fn replace(self, foreign: impl Fn(&Path) -> io::Result<Option<String>>) -> Result<(), Misplaced> {
         sync_folder(self.path())?;
         for _ in 0..LOOKS {
             match self.moved() {
@@ -103,7 +104,7 @@ impl AsideFolder {
                     return Ok(());
                 }
             }
-            if let Some(why) = foreign(&self.target) {
+            if let Some(why) = foreign(&self.target)? {
                 return Err(Misplaced::Taken(Some(why)));
             }
             match rename::swap(self.path(), &self.target) {
@@ -128,10 +129,10 @@ impl AsideFolder {
     }
 
     /// Removes what was swapped out, unless somebody put something else there between the check and the swap.
-    fn drop_earlier(self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
-        if let Some(why) = foreign(self.path()) {
+    fn drop_earlier(self, foreign: impl Fn(&Path) -> io::Result<Option<String>>) -> Result<(), Misplaced> {
+        if let Some(misplaced) = kept_by(foreign(self.path())) {
             self.bring_back()?;
-            return Err(Misplaced::Taken(Some(why)));
+            return Err(misplaced);
         }
         settle(&self.target);
         Ok(())
@@ -150,11 +151,11 @@ impl AsideFolder {
     }
 
     /// Swaps in three steps. What was moved out of the way comes back if it may not be replaced or ours cannot take the place.
-    fn exchange(&self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
+    fn exchange(&self, foreign: impl Fn(&Path) -> io::Result<Option<String>>) -> Result<(), Misplaced> {
         let earlier = self.move_away()?;
-        if let Some(why) = foreign(&earlier) {
+        if let Some(misplaced) = kept_by(foreign(&earlier)) {
             rename::to_new(&earlier, &self.target)?;
-            return Err(Misplaced::Taken(Some(why)));
+            return Err(misplaced);
         }
         if let Err(refused) = rename::to_new(self.path(), &self.target) {
             // If even that fails, it stays under its other name and is never removed.
@@ -179,6 +180,11 @@ impl AsideFolder {
         dir.keep();
         settle(&target);
     }
+}
+
+/// Why what a caller has looked at may not be removed; none if it may be.
+fn kept_by(looked: io::Result<Option<String>>) -> Option<Misplaced> {
+    looked.map_or_else(|error| Some(error.into()), |why| why.map(|why| Misplaced::Taken(Some(why))))
 }
 
 /// The name of what was in the place `target`, while it is out of the way.
@@ -215,10 +221,10 @@ mod tests {
         aside(&target, "first").put_in_place().unwrap();
         let taken = aside(&target, "second").put_in_place();
         assert!(matches!(taken, Err(Misplaced::Taken(None))), "{taken:?}");
-        let kept = aside(&target, "third").replace(|_| Some("it is precious".to_owned()));
+        let kept = aside(&target, "third").replace(|_| Ok(Some("it is precious".to_owned())));
         assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
         assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
-        aside(&target, "fourth").replace(|_| None).unwrap();
+        aside(&target, "fourth").replace(|_| Ok(None)).unwrap();
         assert_eq!((text(&target), entries(station.path())), ("fourth".to_owned(), 1));
     }
 
@@ -228,9 +234,23 @@ mod tests {
         let target = station.path().join("today");
         aside(&target, "first").put_in_place().unwrap();
         // The second check is of what was swapped out.
-        let changed = |path: &Path| (path != target).then(|| "it is precious".to_owned());
+        let changed = |path: &Path| Ok((path != target).then(|| "it is precious".to_owned()));
         let kept = aside(&target, "second").replace(changed);
         assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
+    }
+
+    #[test]
+    fn what_cannot_be_looked_at_after_the_swap_comes_back() {
+        let station = TempDir::new().unwrap();
+        let target = station.path().join("today");
+        aside(&target, "first").put_in_place().unwrap();
+        let unread =
+            |path: &Path| if path == target { Ok(None) } else { Err(io::ErrorKind::StorageFull.into()) };
+        let kept = aside(&target, "second").replace(unread);
+        assert!(matches!(&kept, Err(Misplaced::Io(error)) if error.kind() == io::ErrorKind::StorageFull));
+        let kept = aside(&target, "third").exchange(unread);
+        assert!(matches!(&kept, Err(Misplaced::Io(error)) if error.kind() == io::ErrorKind::StorageFull));
         assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
     }
 
@@ -240,10 +260,10 @@ mod tests {
         let (target, moved) = (station.path().join("today"), station.path().join("moved"));
         aside(&target, "first").put_in_place().unwrap();
         let changed = |path: &Path| {
-            (path != target).then(|| {
+            Ok((path != target).then(|| {
                 fs::rename(&target, &moved).unwrap();
                 "it is precious".to_owned()
-            })
+            }))
         };
         let kept = aside(&target, "second").replace(changed);
         assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
@@ -256,7 +276,7 @@ mod tests {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
         aside(&target, "first").put_in_place().unwrap();
-        let kept = aside(&target, "second").exchange(|_| Some("it is precious".to_owned()));
+        let kept = aside(&target, "second").exchange(|_| Ok(Some("it is precious".to_owned())));
         assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
         assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
     }
@@ -267,7 +287,7 @@ mod tests {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
         fs::write(&target, "first").unwrap();
-        aside(&target, "second").exchange(|_| None).unwrap();
+        aside(&target, "second").exchange(|_| Ok(None)).unwrap();
         assert_eq!(text(&target), "second");
         assert_eq!(fs::read_to_string(station.path().join("today.earlier")).unwrap(), "first");
     }
@@ -278,7 +298,7 @@ mod tests {
         let target = station.path().join("today");
         aside(&target, "first").put_in_place().unwrap();
         let second = aside(&target, "second");
-        second.exchange(|_| None).unwrap();
+        second.exchange(|_| Ok(None)).unwrap();
         second.done();
         assert_eq!((text(&target), entries(station.path())), ("second".to_owned(), 1));
         let killed = aside(&target, "killed");
@@ -289,7 +309,7 @@ mod tests {
         fs::rename(earlier, &target).unwrap();
         let third = aside(&target, "third");
         fs::remove_dir_all(third.path()).unwrap();
-        let refused = third.exchange(|_| None);
+        let refused = third.exchange(|_| Ok(None));
         assert!(matches!(&refused, Err(Misplaced::Io(error)) if error.kind() == io::ErrorKind::NotFound));
         assert_eq!((text(&target), entries(station.path())), ("second".to_owned(), 1));
     }

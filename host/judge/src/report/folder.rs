@@ -12,6 +12,7 @@ use serde::de::IgnoredAny;
 use super::{VIEWS, json};
 use crate::result::{Evidence, Report};
 use crate::verdict::Verdict;
+use halfrow_files::is_of_system;
 use halfrow_files::written_aside::{AsideFolder, Claim, Misplaced, WriteAsideError};
 
 const JSON: &str = "report.json";
@@ -133,7 +134,12 @@ impl ReportFolder {
         check(path, overwrite)?;
         let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
         let aside = AsideFolder::new(path).map_err(failed)?;
-        aside.try_place().map_err(|source| ReportError::Immovable { path: path.to_owned(), source })?;
+        aside.try_place().map_err(|source| {
+            if is_of_system(&source) {
+                return failed(source);
+            }
+            ReportError::Immovable { path: path.to_owned(), source }
+        })?;
         Ok(Self { path: path.to_owned(), overwrite, aside, _claim: claim })
     }
 
@@ -153,7 +159,7 @@ impl ReportFolder {
             self.write(view.name, &(view.render)(report, evidence)?)?;
         }
         let Self { path, overwrite, aside, .. } = self;
-        let occupied = |path: &Path| (!is_empty(path)).then(String::new);
+        let occupied = |path: &Path| Ok((!is_empty(path)?).then(String::new));
         let placed = if overwrite { aside.replace(foreign) } else { aside.replace(occupied) };
         placed.map_err(|misplaced| match misplaced {
             Misplaced::Taken(Some(why)) if overwrite => ReportError::NotAReport { path, why },
@@ -187,12 +193,13 @@ fn named(path: &Path) -> PathBuf {
 /// [`ReportError`] when `path` does not end in a name, or when something there may not be replaced.
 pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
     let path = &named(path);
+    let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
     if path.file_name().is_none() {
         return Err(ReportError::Name { path: path.to_owned() });
     }
     match fs::symlink_metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        Err(source) => Err(ReportError::Prepare { path: path.to_owned(), source }),
+        Err(source) => Err(failed(source)),
         Ok(there) if there.is_symlink() => {
             let to = fs::read_link(path).unwrap_or_default();
             Err(ReportError::Link { path: path.to_owned(), to })
@@ -200,43 +207,54 @@ pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
         Ok(there) if there.is_dir() && there.permissions().mode() & 0o200 == 0 => {
             Err(ReportError::Protected { path: path.to_owned() })
         }
-        Ok(_) => match foreign(path) {
+        Ok(_) => match foreign(path).map_err(failed)? {
             Some(why) => Err(ReportError::NotAReport { path: path.to_owned(), why }),
-            None if overwrite || is_empty(path) => Ok(()),
+            None if overwrite || is_empty(path).map_err(failed)? => Ok(()),
             None => Err(ReportError::Exists { path: path.to_owned() }),
         },
     }
 }
 
 /// Whether `path` is an empty folder, such as scripts make before a run.
-fn is_empty(path: &Path) -> bool {
-    fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
-        && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none())
+fn is_empty(path: &Path) -> io::Result<bool> {
+    Ok(is_folder(path)? && fs::read_dir(path)?.next().is_none())
+}
+
+/// Whether `path` is a folder, and no link to one.
+fn is_folder(path: &Path) -> io::Result<bool> {
+    match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        found => found.map(|found| found.is_dir()),
+    }
 }
 
 /// What shows that `path` is neither an empty folder nor a folder with only a report in it; none if it is. Replacing a folder
 /// removes everything in it, so it may hold nothing else.
-fn foreign(path: &Path) -> Option<String> {
-    if !fs::symlink_metadata(path).is_ok_and(|found| found.is_dir()) {
-        return Some("it is not a folder".to_owned());
+fn foreign(path: &Path) -> io::Result<Option<String>> {
+    if !is_folder(path)? {
+        return Ok(Some("it is not a folder".to_owned()));
     }
     let entries = match fs::read_dir(path).and_then(Iterator::collect::<io::Result<Vec<_>>>) {
-        Ok(entries) => entries,
-        Err(error) => return Some(format!("it cannot be listed ({error})")),
+        Err(error) if !is_of_system(&error) => return Ok(Some(format!("it cannot be listed ({error})"))),
+        listed => listed?,
     };
     let ours = |name: &OsStr| name == JSON || VIEWS.iter().any(|view| name == view.name);
     if let Some(other) = entries.iter().map(fs::DirEntry::file_name).find(|name| !ours(name)) {
-        return Some(format!("it also holds `{}`", other.display()));
+        return Ok(Some(format!("it also holds `{}`", other.display())));
     }
     let is_file = |entry: &&fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
     if let Some(other) = entries.iter().find(|entry| !is_file(entry)) {
-        return Some(format!("its `{}` is not a file", other.file_name().display()));
+        return Ok(Some(format!("its `{}` is not a file", other.file_name().display())));
     }
-    (!entries.is_empty() && !is_report(&path.join(JSON))).then(|| format!("it holds no {JSON} of halfrow's"))
+    let is_ours = entries.is_empty() || is_report(&path.join(JSON))?;
+    Ok((!is_ours).then(|| format!("it holds no {JSON} of halfrow's")))
 }
 
 /// Whether a file is a report's JSON of any version, by the keys with which every report begins.
-fn is_report(path: &Path) -> bool {
+///
+/// # Errors
+/// The system's reason, when that has nothing to do with the file.
+fn is_report(path: &Path) -> io::Result<bool> {
     #[derive(Deserialize)]
     struct Head {
         #[serde(rename = "schema")]
@@ -249,6 +267,11 @@ fn is_report(path: &Path) -> bool {
         #[serde(rename = "board")]
         _board: IgnoredAny,
     }
-    let head = File::open(path).map(|file| serde_json::from_reader::<_, Head>(BufReader::new(file)));
-    matches!(head, Ok(Ok(head)) if ["verify", "soak"].contains(&head.command.as_str()))
+    let head =
+        File::open(path).and_then(|file| Ok(serde_json::from_reader::<_, Head>(BufReader::new(file))?));
+    match head {
+        Ok(head) => Ok(["verify", "soak"].contains(&head.command.as_str())),
+        Err(error) if is_of_system(&error) => Err(error),
+        Err(_) => Ok(false),
+    }
 }

@@ -117,7 +117,7 @@ impl KeptPlans {
         make_folder(&self.folder).map_err(refused)?;
         let aside = AsideFolder::new(&place).map_err(refused)?;
         fill(aside.path())?;
-        aside.replace(|_| None).map_err(|misplaced| match misplaced {
+        aside.replace(|_| Ok(None)).map_err(|misplaced| match misplaced {
             Misplaced::Io(source) => refused(source),
             Misplaced::Taken(why) => refused(io::Error::other(why.unwrap_or_default())),
         })?;
