@@ -88,6 +88,23 @@ fn a_memory_image_that_does_not_belong_to_the_other_is_named_where_names_cannot_
     assert_eq!(folder.names("."), ["l.kernel.mem", "l.steps.mem"]);
 }
 
+/// A network file system may tell of a full disk only when a file is brought to it.
+#[test]
+fn of_two_memory_images_none_is_replaced_where_names_cannot_be_swapped_and_one_finds_no_space() {
+    let folder = Folder::new();
+    let images = || ["l.steps.mem", "l.kernel.mem"].map(|name| folder.text(name));
+    assert_eq!(folder.halfrow(small("tables", &["-o", "l.mem"])).code, Some(0));
+    let earlier = images();
+    let line = "exec strace -f -qq -o /dev/null -e inject=renameat2:error=EINVAL \
+                -e inject=fsync:error=ENOSPC:when=2 \"$@\"";
+    let again = ["-o", "l.mem", "--overwrite", "--kernel", "keys", "--centre-y", "3"];
+    let ended = finish(&mut folder.by_shell(line, small("tables", &again)));
+    assert_eq!(ended.code, Some(3), "{ended:?}");
+    assert!(images() == earlier, "{ended:?}");
+    assert!(!ended.stderr.contains("WARN"), "{ended:?}");
+    assert_eq!(folder.names("."), ["l.kernel.mem", "l.steps.mem"]);
+}
+
 #[test]
 fn a_table_file_and_written_frames_can_be_judged_with() {
     let folder = Folder::new();

@@ -16,6 +16,9 @@ use super::{Aside, WriteAsideError, check, place, rename, settle};
 /// That of [`Aside::put_in_place`] for the one that is refused. If what was in the place of another cannot come back, as on file
 /// systems where names cannot be swapped, a warning names that place.
 pub fn put_all_in_place(files: impl IntoIterator<Item = Aside>) -> Result<(), WriteAsideError> {
+    let mut files: Vec<_> = files.into_iter().collect();
+    // A disk may tell only then that it is full, when names that cannot be swapped would not come back.
+    files.iter_mut().try_for_each(Aside::whole)?;
     let mut placed = Vec::new();
     for file in files {
         match Placed::by(file) {
@@ -45,8 +48,8 @@ enum Earlier {
 }
 
 impl Placed {
-    fn by(mut file: Aside) -> Result<Self, WriteAsideError> {
-        file.whole()?;
+    /// Of a file that is whole.
+    fn by(file: Aside) -> Result<Self, WriteAsideError> {
         let Aside { out, path, overwrite, _noted: noted, .. } = file;
         let aside = out.into_parts().0;
         if !overwrite {
