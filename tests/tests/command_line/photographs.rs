@@ -93,6 +93,22 @@ fn the_document_says_how_each_picture_was_fitted() {
     }
 }
 
+/// Or it would be said of another picture.
+#[test]
+fn what_is_not_in_place_is_not_said_to_be_fitted_either() {
+    let folder = folder();
+    for (place, whom) in [("model", "--model"), ("board", "--board=mock")] {
+        let call = ["--json", "-q", whom, "--fit", "-o", place, "turned6.jpg", "pipe.png"];
+        // By then the first picture is in its place.
+        let line = "rm -f pipe.png; mkfifo pipe.png; (sleep 2; echo no picture >pipe.png) & exec \"$@\"";
+        let ended = finish(&mut folder.by_shell(line, small("correct", &call)));
+        let said = ended.json();
+        assert_eq!((ended.code, &said["outputs"]), (Some(2), &json!([format!("{place}/turned6.pgm")])));
+        assert_eq!(said["fitted"].as_array().map(Vec::len), Some(1), "{said}");
+        assert_eq!(said["fitted"][0]["found"], json!({ "width": 48, "height": 72 }), "{said}");
+    }
+}
+
 #[test]
 fn fitting_comes_from_the_environment_and_the_settings_too() {
     let folder = folder();

@@ -213,8 +213,11 @@ impl Job<'_> {
             let kind = board.map_or_else(|| "model".to_owned(), ToString::to_string);
             let [outputs, previews] = [frames, previews]
                 .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-            let fitted: Vec<_> =
-                self.fittings.iter().map(|fitting| fitting.get().map(fitting_json)).collect();
+            let of_frames = self.fittings.iter().zip(&places.frames);
+            let fitted: Vec<_> = of_frames
+                .filter(|(_, path)| written.contains(*path))
+                .map(|(fitting, _)| fitting.get().map(fitting_json))
+                .collect();
             let rest = json!({
                 "corrected_by": kind,
                 "tables": tables,
