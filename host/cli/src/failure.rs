@@ -23,13 +23,15 @@ pub struct Failure {
     pub(crate) option: Option<&'static str>,
     /// The keys of its document in addition to those of any other failure: what the command found nevertheless.
     pub(crate) so_far: Option<Value>,
+    /// Whether the call is refused, so that what its error asks for does not fit if the system alone is the cause.
+    pub(crate) is_refusal: bool,
 }
 
 impl Failure {
     /// A failure of the call or of its input, unless the system alone is its cause.
     pub(crate) fn call(error: impl Into<anyhow::Error>) -> Self {
         let error = error.into();
-        Self::of(Exit::of_refusal(error.as_ref()), error)
+        Self { is_refusal: true, ..Self::of(Exit::of_refusal(error.as_ref()), error) }
     }
 
     /// A failure for which the call is not to blame.
@@ -44,7 +46,7 @@ impl Failure {
 
     /// A failure with this exit code.
     pub(crate) fn of(exit: Exit, error: impl Into<anyhow::Error>) -> Self {
-        Self { exit, error: error.into(), option: None, so_far: None }
+        Self { exit, error: error.into(), option: None, so_far: None, is_refusal: false }
     }
 
     /// This failure, attributed to the value of `option`, wherever that comes from.
@@ -61,7 +63,9 @@ impl Failure {
     /// Why, in words that name the flags of this program.
     #[must_use]
     pub fn problem(&self) -> Problem {
-        flags::named_in(codes::problem(self.exit, &self.error))
+        let problem = codes::problem(self.exit, &self.error);
+        let is_refusal = self.is_refusal;
+        flags::named_in(if is_refusal { problem.of_refusal(self.error.as_ref()) } else { problem })
     }
 
     /// The document of `command`, which failed with this.

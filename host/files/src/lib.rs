@@ -12,4 +12,4 @@ pub mod text;
 pub mod written_aside;
 
 pub use regular::{NotRegular, check_regular};
-pub use system::is_of_system;
+pub use system::{asked_of_system, is_of_system};

@@ -1,12 +1,11 @@
 //! Exit codes, which scripts rely on. Only here do classes of errors and causes of results become numbers.
 
 use std::error::Error;
-use std::{io, iter};
 
-use halfrow_files::is_of_system;
 use serde::Serialize;
 
 use crate::link::Class;
+use crate::result::asked_of_system;
 use crate::verdict::{Cause, StoppedBy, Verdict};
 
 /// How a command ended.
@@ -59,9 +58,7 @@ impl Exit {
     /// process that has too many files open.
     #[must_use]
     pub fn of_refusal(error: &(dyn Error + 'static)) -> Self {
-        let mut causes = iter::successors(Some(error), |&error| error.source());
-        let is_of_system = causes.any(|cause| cause.downcast_ref::<io::Error>().is_some_and(is_of_system));
-        if is_of_system { Self::Error } else { Self::Usage }
+        if asked_of_system(error).is_some() { Self::Error } else { Self::Usage }
     }
 
     /// The process's exit code.
@@ -136,6 +133,8 @@ impl Serialize for Exit {
 
 #[cfg(test)]
 mod tests {
+    use std::io;
+
     use super::*;
     use crate::call::FilesError;
 

@@ -1,6 +1,6 @@
 //! Frame files that cannot be streamed: each is refused with its own message, and nothing is written.
 
-use halfrow_tests::program::Folder;
+use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, small};
 
@@ -200,6 +200,29 @@ fn a_pipe_is_no_frame_to_judge_with() {
     refused(&folder, &small("verify", &["--frame", "pipe.pgm"]), sentence);
     refused(&folder, &["verify", "--tables", "pipe.pgm"], sentence);
     refused(&folder, &["verify", "--lens", "pipe.pgm"], sentence);
+}
+
+/// Nothing is wrong with a name or with rights then.
+#[test]
+fn what_the_system_fails_to_do_asks_for_something_of_the_system() {
+    let folder = Folder::new();
+    folder.halfrow(small("correct", &["builtin:bars", "--model", "-o", "in.pgm"])).succeeded();
+    let call = small("correct", &["--json", "in.pgm", "--model", "-o", "out.pgm"]);
+    for (error, code, asked) in [
+        ("EIO", 3, "Look for a fault of the disk or device in the system's log, then run again."),
+        ("EMFILE", 3, "End other programs or allow more open files, then run again."),
+        ("EACCES", 2, "Check that it exists and that you may read it."),
+    ] {
+        let line = format!("exec strace -f -qq -o /dev/null -P in.pgm -e inject=openat:error={error} \"$@\"");
+        let ended = finish(&mut folder.by_shell(&line, call.clone()));
+        assert_eq!((ended.code, &ended.json()["error"]["remedy"]), (Some(code), &asked.into()), "{ended:?}");
+        let message = ended.json()["error"]["message"].as_str().unwrap().to_lowercase();
+        let act = asked.trim_end_matches('.').to_lowercase();
+        assert_eq!(message, format!("cannot read in.pgm; {act}"));
+    }
+    let line = "exec strace -f -qq -o /dev/null -e inject=mkdir:error=ENOSPC \"$@\"";
+    let ended = finish(&mut folder.by_shell(line, small("verify", &["--report", "out"])));
+    assert!(ended.stderr.contains("cannot make the folder out; free some space"), "{ended:?}");
 }
 
 /// File names are bytes, and need not be text.

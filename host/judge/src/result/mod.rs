@@ -66,6 +66,7 @@ pub use late_rows::LateRows;
 pub use link::{LinkReport, Reconnection};
 pub use missing_rows::MissingRows;
 pub use not_exercised::NotExercised;
+pub(crate) use problem::asked_of_system;
 pub use problem::{Parameters, Problem, split_remedy};
 pub use rule::{Answer, MissingRow, NumberedRow, PlacedRow, RepeatedRow, RowPart, RowsTried, Rule};
 pub(crate) use sha256::little_endian;

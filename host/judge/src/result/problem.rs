@@ -1,7 +1,7 @@
 //! An error as data: its code, its parameters, and its causes.
 
 use std::error::Error;
-use std::fmt;
+use std::{fmt, io, iter};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -52,7 +52,7 @@ impl Problem {
     /// wraps one with a code takes that code; any other without a code gets [`codes::FOREIGN`].
     #[must_use]
     pub fn by(error: &(dyn Error + 'static), lookup: codes::Lookup) -> Self {
-        let mut chain: Vec<_> = std::iter::successors(Some(error), |&error| error.source())
+        let mut chain: Vec<_> = iter::successors(Some(error), |&error| error.source())
             .flat_map(|error| told(error).map_or_else(|| vec![one(error, lookup)], Problem::chain))
             .collect();
         if let Some(known) = chain.iter().find(|problem| problem.code != codes::FOREIGN).cloned()
@@ -66,11 +66,21 @@ impl Problem {
         Self { remedy, causes: chain.collect(), ..first }
     }
 
+    /// This problem of a call that is refused because of `error`. If the system alone is the cause, it asks for what lets the same
+    /// call succeed, and not for another name or other rights.
+    #[must_use]
+    pub fn of_refusal(self, error: &(dyn Error + 'static)) -> Self {
+        let Some(asked) = asked_of_system(error) else { return self };
+        let mut unasked = self.unasked();
+        unasked.causes.iter_mut().for_each(|cause| cause.remedy = None);
+        Self { message: format!("{}; {asked}", unasked.message), remedy: sentence(asked), ..unasked }
+    }
+
     /// The problem without what to do about it.
     #[must_use]
     pub(crate) fn unasked(mut self) -> Self {
         let causes = self.causes.iter_mut().map(|cause| (&mut cause.message, &cause.parameters));
-        for (message, parameters) in std::iter::once((&mut self.message, &self.parameters)).chain(causes) {
+        for (message, parameters) in iter::once((&mut self.message, &self.parameters)).chain(causes) {
             if let Some((what, _)) = split_remedy(message, parameters) {
                 *message = what.to_owned();
             }
@@ -83,15 +93,21 @@ impl Problem {
     #[must_use]
     pub fn chain(mut self) -> Vec<Self> {
         let causes = std::mem::take(&mut self.causes);
-        std::iter::once(self).chain(causes).collect()
+        iter::once(self).chain(causes).collect()
     }
 
     /// The problem and its causes in one sentence.
     #[must_use]
     pub fn sentence(&self) -> String {
         let causes = self.causes.iter().map(|cause| cause.message.as_str());
-        std::iter::once(self.message.as_str()).chain(causes).collect::<Vec<_>>().join(": ")
+        iter::once(self.message.as_str()).chain(causes).collect::<Vec<_>>().join(": ")
     }
+}
+
+/// What lets the call succeed that is refused because of `error`, if the system alone is the cause.
+pub(crate) fn asked_of_system(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    let mut causes = iter::successors(Some(error), |&error| error.source());
+    causes.find_map(|cause| halfrow_files::asked_of_system(cause.downcast_ref::<io::Error>()?))
 }
 
 /// The problem that an error is, or has in it.
