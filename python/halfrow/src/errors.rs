@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::io;
 
+use halfrow::exit::Exit;
 use halfrow::optics::OpticsError;
 use halfrow::result::Problem;
 use pyo3::prelude::*;
@@ -33,7 +34,13 @@ impl Whose {
 
 /// The exception for `error` in a call or in something that it names.
 pub(crate) fn input<E: Error + 'static>(error: E) -> PyErr {
-    raised(Whose::Call, &error)
+    refused(&error)
+}
+
+/// The exception for a call that is refused because of `error`. A full disk is no fault of the call.
+pub(crate) fn refused(error: &(dyn Error + 'static)) -> PyErr {
+    let whose = Whose::of_call(Exit::of_refusal(error) == Exit::Usage);
+    exception(whose, &Problem::of(error).of_refusal(error))
 }
 
 /// The exception for a lens, tables or a kernel that cannot be used. Tables of another datapath are refused
@@ -41,7 +48,7 @@ pub(crate) fn input<E: Error + 'static>(error: E) -> PyErr {
 pub(crate) fn optics(error: impl Into<OpticsError>) -> PyErr {
     let error = error.into();
     let is_of_call = !error.is_other_datapath() && !matches!(error, OpticsError::Damaged(_));
-    raised(Whose::of_call(is_of_call), &error)
+    if is_of_call { refused(&error) } else { failed(error) }
 }
 
 /// The exception for `error`, for which the call is not to blame.

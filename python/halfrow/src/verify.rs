@@ -53,7 +53,7 @@ pub(crate) fn verify(
     let record = record.transpose().map_err(errors::input)?;
     let job = Job { plan, options, target, recording, record, report };
     let done = watched(py, asked.progress.as_ref(), Some(&is_stopped), move |progress| job.run(progress))?;
-    let Done { finished, not_begun } = done.map_err(|error| errors::raised(Whose::Call, error.as_ref()))?;
+    let Done { finished, not_begun } = done.map_err(|error| errors::refused(error.as_ref()))?;
     let raised = not_begun.map(|error| errors::raised(Whose::World, error.as_ref()).into_value(py));
     Ok((Run { finished }, raised))
 }

@@ -1,4 +1,5 @@
 """What is refused: with the program's codes, and with the exceptions of Python's own libraries."""
+import json
 import os
 import pathlib
 import pickle
@@ -275,6 +276,29 @@ def test_a_run_that_gets_no_thread_is_an_error():
     ended = subprocess.run([*refused, sys.executable, "-c", judged], env=alone, capture_output=True, text=True)
     remedy = "End other programs, or allow this user more processes, then run again."
     assert ended.stdout == f"run-thread-missing {remedy}\n", ended.stderr
+
+
+@pytest.mark.parametrize("error, code", [("ENOSPC", 3), ("EIO", 3), ("EACCES", 2)])
+def test_a_full_disk_is_no_fault_of_the_call(tmp_path, error, code):
+    """An InputError where the program ends with 2."""
+    refused = ["strace", "-f", "-qq", "-o", os.devnull, "-e", f"inject=mkdir:error={error}"]
+    program = pathlib.Path(os.environ["HALFROW_PROGRAMS"]).resolve() / "halfrow"
+    by_program = [*refused, program, "verify", "--width", "64", "--height", "2", "--report", "report", "--json"]
+    ended = subprocess.run(by_program, cwd=tmp_path, capture_output=True, text=True)
+    assert ended.returncode == code, ended.stderr
+    judged = textwrap.dedent(
+        """
+        import halfrow
+        try:
+            halfrow.verify(tables=halfrow.Tables.from_lens(halfrow.Lens(width=64, height=2)), report="report")
+        except halfrow.HalfrowError as error:
+            print(type(error).__name__, error.code, error.remedy)
+        """
+    )
+    by_package = subprocess.run([*refused, sys.executable, "-c", judged], cwd=tmp_path, capture_output=True, text=True)
+    told = json.loads(ended.stdout)["error"]
+    expected = ["InputError" if code == 2 else "HalfrowError", told["code"], *told["remedy"].split()]
+    assert by_package.stdout.split() == expected, by_package.stderr
 
 
 @pytest.mark.parametrize(
