@@ -156,7 +156,7 @@ mod tests {
         let refused = |number: i32| {
             let source = io::Error::from_raw_os_error(number);
             let path = "out".into();
-            Exit::of_refusal(&FilesError::FolderClosed { path, option: "--output", source })
+            Exit::of_refusal(&FilesError::FolderClosed { path, option: "output", source })
         };
         for (name, number) in [("EIO", 5), ("ENFILE", 23), ("EMFILE", 24), ("ENOSPC", 28), ("EDQUOT", 122)] {
             assert_eq!(refused(number), Exit::Error, "{name}");
@@ -164,7 +164,7 @@ mod tests {
         for (name, number) in [("EPERM", 1), ("ENOENT", 2), ("EACCES", 13), ("EBUSY", 16), ("EROFS", 30)] {
             assert_eq!(refused(number), Exit::Usage, "{name}");
         }
-        let exists = FilesError::Exists { path: "out".into(), option: "--output" };
+        let exists = FilesError::Exists { path: "out".into(), option: "output" };
         assert_eq!(Exit::of_refusal(&exists), Exit::Usage);
     }
 }
