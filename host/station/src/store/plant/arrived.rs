@@ -38,7 +38,8 @@ pub(super) fn run(
     Ok(())
 }
 
-/// Enters the run of `unit`, and what is counted from it; it `counts` unless it is superseded, or its unit checks shifts. Returns whether it is new.
+/// Enters the run of `unit`, and what is counted from it; it `counts` unless it is superseded, or its unit checks shifts. Returns
+/// whether it is new.
 pub(in crate::store) fn entered(
     to: &mut dyn Database,
     record: &Record,
