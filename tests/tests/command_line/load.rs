@@ -127,7 +127,11 @@ fn a_board_that_never_answers_is_waited_for_until_the_deadline() {
 #[test]
 fn a_bitstream_without_a_record_is_loaded_with_a_warning_onto_the_board_that_is_named() {
     let folder = with_loader(WORKS);
-    refused(&folder, &["top.bit"], 2, "bitstream-board-not-named");
+    let error = refused(&folder, &["top.bit"], 2, "bitstream-board-not-named");
+    let message = error["message"].as_str().unwrap();
+    for part in ["--onto", "minispartan6plus", "ulx3s", "load another board with its own loader"] {
+        assert!(message.contains(part), "{message}");
+    }
     assert!(!folder.path().join("called").exists());
     let ended = load(&folder, &["top.bit", "--onto", "ulx3s", "--json"]).succeeded();
     assert!(ended.stderr.contains("warning: there is no top.bit.json beside it"), "{}", ended.stderr);

@@ -134,10 +134,11 @@ commands! {
     Link(super::link::Arguments), "link";
     /// Load a bitstream into a board
     ///
-    /// Calls openFPGALoader, which must be installed. With --board, the loaded board is then greeted, and its build compared with
-    /// the one in the file next to the bitstream (top.bit.json of top.bit), which the build scripts write. Exit codes: 0 loaded,
-    /// and the same build where it was compared, 2 usage or no loader, nothing was loaded, 3 the loader failed or was killed at its
-    /// deadline, or nothing answers, 4 busy, 6 the board is of another build.
+    /// Calls openFPGALoader, which must be installed, for the boards that `halfrow boards` lists bitstreams for; another board needs
+    /// its own loader. With --board, the loaded board is then greeted, and its build compared with the one in the file next to the
+    /// bitstream (top.bit.json of top.bit), which the build scripts write. Exit codes: 0 loaded, and the same build where it was
+    /// compared, 2 usage or no loader, nothing was loaded, 3 the loader failed or was killed at its deadline, or nothing answers, 4
+    /// busy, 6 the board is of another build.
     Load(super::load::Arguments), "load";
     /// Serve a mock or simulated board to other programs
     ///

@@ -20,7 +20,10 @@ pub(in crate::commands) enum LoadError {
     )]
     OtherBitstream { path: PathBuf, record: PathBuf },
     /// Neither the bitstream's record nor the call says which board it is for.
-    #[error("nothing beside {} says which board it is for; name the board with --onto: {known}", path.display())]
+    #[error(
+        "nothing beside {} says which board it is for; name the board with --onto: {known} (load another board with its own \
+         loader, then ask it with `halfrow info --board TARGET`)", path.display()
+    )]
     Nameless { path: PathBuf, known: String },
     /// This program does not know how to load the board that the bitstream is for.
     #[error("{} is for a board `{board}`, and this halfrow can load {known}; use the halfrow that it was built with", path.display())]
