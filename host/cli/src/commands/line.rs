@@ -89,8 +89,9 @@ commands! {
     /// Judge a board: stream frames through it and compare every sample with the reference
     ///
     /// Without --board the built-in mock board is judged. Unless tables, frames, --centre-x or --bits are given, extra frames vary
-    /// the optical centre and the depth; a PASS names what no frame exercised. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy,
-    /// 5 nothing judged, 6 identity or version refused, 129, 130 or 143 interrupted.
+    /// the optical centre and the depth; a PASS names what no frame exercised. The board's tables are lost: the rules, which come
+    /// last, leave it as at power-up. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged, 6 identity or version
+    /// refused, 129, 130 or 143 interrupted.
     Verify(super::verify::Arguments), "verify";
     /// Judge a board for hours, by frames that it makes at its full pixel clock
     ///
@@ -100,6 +101,8 @@ commands! {
     /// was interrupted. Exit codes are those of verify; 5 if the board makes no frames.
     Soak(super::soak::Arguments), "soak";
     /// Correct frames with the reference model, or with a board, unjudged
+    ///
+    /// A board keeps the tables, and their size and depth, until it is given others, loses its power or is judged.
     Correct(super::correct::Arguments), "correct";
     /// Make a table file: a row factor for every row, and a kernel
     Tables(super::tables::Arguments), "tables";
