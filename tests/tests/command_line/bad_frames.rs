@@ -222,7 +222,7 @@ fn what_the_system_fails_to_do_asks_for_something_of_the_system() {
     }
     let line = "exec strace -f -qq -o /dev/null -e inject=mkdir:error=ENOSPC \"$@\"";
     let ended = finish(&mut folder.by_shell(line, small("verify", &["--report", "out"])));
-    assert!(ended.stderr.contains("cannot make the folder out; free some space"), "{ended:?}");
+    assert!(ended.stderr.contains("cannot prepare the report's folder out; free some space"), "{ended:?}");
 }
 
 /// File names are bytes, and need not be text.

@@ -71,8 +71,8 @@ pub enum ReportError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The report's folder cannot be made there.
-    #[error("cannot make the folder {}; check that the folder above it exists, is writable and has space", path.display())]
+    /// The report's folder cannot be looked at or made there.
+    #[error("cannot prepare the report's folder {}; check that the folder above it exists, is writable and has space", path.display())]
     Prepare {
         /// The path.
         path: PathBuf,
