@@ -83,7 +83,7 @@ impl TestedBoard {
             ControlFlow::Continue(())
         };
         let latency = correction.run(&mut self.board, inputs.iter().cloned(), take, progress)?;
-        self.frames += inputs.len() as u16;
+        self.frames = self.frames.wrapping_add(inputs.len() as u16);
         Ok(Corrected { samples, latency })
     }
 
