@@ -28,8 +28,8 @@ fn program() -> Exit {
 
 /// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
-    console::error(&format_args!("{:#}", failure.error));
-    console::refer(commands::code(failure).as_deref());
+    console::error(&failure.problem());
+    console::refer(failure.code().as_deref());
     if let Some(command) = as_json_of {
         console::tell(&commands::failure(command, failure));
     }

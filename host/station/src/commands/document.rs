@@ -6,7 +6,6 @@ use halfrow_program::json;
 use serde::Serialize;
 
 use super::Failure;
-use crate::codes;
 use crate::exit::Exit;
 
 /// The result of a command.
@@ -27,17 +26,10 @@ pub(super) const IN_LINES: &str = "work";
 /// The document of a command that failed. It has no verdict, because none was saved.
 #[must_use]
 pub fn failure(command: &str, failure: &Failure) -> String {
-    let Failure { exit, error } = failure;
-    let indented = json::without_result(command, *exit, None, &codes::problem(*exit, error));
+    let indented = json::without_result(command, failure.exit, None, &failure.problem());
     if command != IN_LINES {
         return indented;
     }
     // No string of JSON has a newline of its own.
     indented.lines().map(str::trim_start).collect()
-}
-
-/// The code of a command's failure, if `halfrow explain` has more to say about it.
-#[must_use]
-pub fn code(failure: &Failure) -> Option<String> {
-    halfrow_program::codes::explained(codes::problem(failure.exit, &failure.error))
 }

@@ -136,7 +136,7 @@ impl From<CopyError> for Failure {
     fn from(error: CopyError) -> Self {
         match error {
             CopyError::Exists { .. } => Self::call(error),
-            CopyError::UnderWay { .. } => Self { exit: Exit::Busy, error: error.into() },
+            CopyError::UnderWay { .. } => Self::of(Exit::Busy, error),
             CopyError::Store(error) => error.into(),
             error => Self::error(error),
         }

@@ -32,7 +32,7 @@ pub(super) fn write(arguments: &Manual) -> Result<Exit, Failure> {
         // The library names no flag.
         let exists = matches!(error.downcast_ref(), Some(FilesError::Exists { .. }));
         let flag = "a page is there already, and is replaced with --overwrite alone";
-        Failure { exit, error: if exists { error.context(flag) } else { error } }
+        Failure::of(exit, if exists { error.context(flag) } else { error })
     })?;
     Ok(Exit::Pass)
 }

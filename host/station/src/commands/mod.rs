@@ -41,7 +41,8 @@ mod yields;
 use clap::{ArgAction, Parser, Subcommand};
 
 use document::IN_LINES;
-pub use document::{code, failure};
+pub use document::failure;
+use halfrow::result::Problem;
 use halfrow::words::plain_lines;
 
 use crate::console::{self, Unprinted};
@@ -109,18 +110,38 @@ pub struct Failure {
     pub exit: Exit,
     /// Why, with its causes.
     pub error: anyhow::Error,
+    /// Whether the call is refused, so that what its error asks for does not fit if the system alone is the cause.
+    is_refusal: bool,
 }
 
 impl Failure {
     /// A failure of the call or of its input, unless the system alone is its cause.
     fn call(error: impl Into<anyhow::Error>) -> Self {
         let error = error.into();
-        Self { exit: Exit::of_refusal(error.as_ref()), error }
+        Self { is_refusal: true, ..Self::of(Exit::of_refusal(error.as_ref()), error) }
     }
 
     /// A failure that is not the caller's.
     pub fn error(error: impl Into<anyhow::Error>) -> Self {
-        Self { exit: Exit::Error, error: error.into() }
+        Self::of(Exit::Error, error)
+    }
+
+    /// A failure with this exit code.
+    fn of(exit: Exit, error: impl Into<anyhow::Error>) -> Self {
+        Self { exit, error: error.into(), is_refusal: false }
+    }
+
+    /// Why, with what to do about it.
+    #[must_use]
+    pub fn problem(&self) -> Problem {
+        let problem = crate::codes::problem(self.exit, &self.error);
+        if self.is_refusal { problem.of_refusal(self.error.as_ref()) } else { problem }
+    }
+
+    /// Its code, if `halfrow explain` has more to say about it.
+    #[must_use]
+    pub fn code(&self) -> Option<String> {
+        halfrow_program::codes::explained(self.problem())
     }
 }
 
@@ -224,7 +245,7 @@ impl From<StoreError> for Failure {
             StoreError::NoResults { .. } | StoreError::Path { .. } => Exit::Usage,
             _ => Exit::Error,
         };
-        Self { exit, error: error.into() }
+        Self::of(exit, error)
     }
 }
 

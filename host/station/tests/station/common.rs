@@ -264,6 +264,13 @@ pub(crate) fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// Runs the program while the system refuses this of the file at `path`.
+pub(crate) fn did_refused(path: &Path, what: &str, arguments: &[&str]) -> Did {
+    let mut call = Command::new("strace");
+    call.args(["-f", "-qq", "-o", "/dev/null", "-e", &format!("inject={what}"), "-P"]).arg(path);
+    call.arg(program()).args(arguments).output().unwrap().into()
+}
+
 /// What the program does when it is called so with the settings in this folder.
 pub(crate) fn did_in(folder: &Path, arguments: &[&str]) -> Did {
     command(folder, arguments).output().unwrap().into()

@@ -4,7 +4,9 @@ use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt as _;
 use std::process::Command;
 
-use crate::common::{Did, PLAN, did, program};
+use serde_json::Value;
+
+use crate::common::{Did, PLAN, did, did_refused, program};
 use crate::runs::bench::Station;
 
 /// An option that another one makes needless is offered beside it.
@@ -58,5 +60,29 @@ fn a_folder_s_name_begins_no_line() {
         let told = did(&[call, &["--data", &data]].concat());
         assert_eq!(told.code, Some(0), "{call:?}: {told:?}");
         assert!(told.said.contains("\\u{1b}[8m\\nPASS") && told.said.lines().count() == 1, "{told:?}");
+    }
+}
+
+/// Nothing is wrong with the plan's name or with its rights then.
+#[test]
+fn a_plan_that_the_system_cannot_read_asks_for_something_of_the_system() {
+    let station = Station::with(PLAN);
+    let plan = station.path("plan.toml");
+    let name = plan.to_str().unwrap();
+    let call = ["run", "--data", "x", "--plan", name, "--serial", "CAT00001", "--board", "mock", "--json"];
+    for (error, code, asked) in [
+        ("EIO", 3, "look for a fault of the disk or device in the system's log, then run again"),
+        ("EMFILE", 3, "end other programs or allow more open files, then run again"),
+        ("EACCES", 2, "check its name, and who may read it"),
+    ] {
+        let did = did_refused(&plan, &format!("openat:error={error}"), &call);
+        let message = format!("{name} cannot be read; {asked}");
+        let document: Value = serde_json::from_str(&did.said).unwrap();
+        assert_eq!(
+            (did.code, document["error"]["message"].as_str()),
+            (Some(code), Some(&*message)),
+            "{did:?}"
+        );
+        assert!(did.complained.contains(&message), "{did:?}");
     }
 }

@@ -1,16 +1,13 @@
 //! Evidence that could not be read just then: the disk or the share had a fault, or the program had no descriptor left. It
 //! may be sound.
 
-use std::path::Path;
-use std::process::Command;
-
 use halfrow::result::sha256;
 use halfrow_station::kept::backup;
 use halfrow_station::store::Folder;
 
 use super::commands::did;
 use super::made::{End, Made, Run};
-use crate::common::{Did, program, untold};
+use crate::common::{did_refused, untold};
 
 const OVERWRITTEN: &str = "cannot be read; put the file of that name";
 
@@ -19,13 +16,6 @@ fn made() -> Made {
     let mut made = Made::new();
     made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
     made
-}
-
-/// Runs the program while the system refuses this of the file at `path`.
-fn refused(path: &Path, what: &str, arguments: &[&str]) -> Did {
-    let mut call = Command::new("strace");
-    call.args(["-f", "-qq", "-o", "/dev/null", "-e", &format!("inject={what}"), "-P"]).arg(path);
-    call.arg(program()).args(arguments).output().unwrap().into()
 }
 
 /// Otherwise somebody puts an older file in the place of a sound one, and never learns of the disk.
@@ -42,10 +32,10 @@ fn what_could_not_be_read_is_told_with_the_system_s_reason_and_not_called_damage
     for (what, reason) in
         [("read:error=EIO", "Input/output error"), ("openat:error=EMFILE", "Too many open files")]
     {
-        let did = refused(&evidence, what, &["check", "--data", data]);
+        let did = did_refused(&evidence, what, &["check", "--data", data]);
         let is_told = did.said.contains(reason) && did.said.contains("read it again");
         assert!(did.code == Some(3) && is_told && !did.said.contains(OVERWRITTEN), "{did:?}");
-        let did = refused(&of(&Folder::new(&copy)), what, &["restore", copy_name, "--data", again]);
+        let did = did_refused(&of(&Folder::new(&copy)), what, &["restore", copy_name, "--data", again]);
         let is_told = did.complained.contains(reason) && did.complained.contains("read it again");
         assert!(did.code == Some(3) && is_told && !did.complained.contains(OVERWRITTEN), "{did:?}");
     }
@@ -62,6 +52,6 @@ fn a_backup_says_why_it_lacks_what_could_not_be_read() {
     let place = tempfile::tempdir().unwrap();
     let copy = place.path().join("copy");
     let call = ["backup", copy.to_str().unwrap(), "--data", made.as_ref().to_str().unwrap()];
-    let did = refused(&made.folder().blobs().path(&nobody_s), "read:error=EIO", &call);
+    let did = did_refused(&made.folder().blobs().path(&nobody_s), "read:error=EIO", &call);
     assert!(did.code == Some(3) && did.said.contains("Input/output error"), "{did:?}");
 }
