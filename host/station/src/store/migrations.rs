@@ -41,13 +41,17 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
         check(database, path, version, &sha256([schema]))?;
     }
     let Some((next, _)) = new.first() else { return Ok(()) };
+    let mut kept = String::new();
+    if found > 0 {
+        tracing::warn!("{} is upgraded, which takes a while if it is large", name(engine, path));
+    }
     if found > 0 && engine == Engine::Sqlite {
         refuse_full_disk(path)?;
-        copy(database, path, *next)?;
+        kept = name(engine, &copy(database, path, *next)?);
     }
     let change = |to: &mut dyn Database| {
         if found > 0 && engine == Engine::Postgres {
-            copy_tables(to, *next)?;
+            kept = format!("the schema {}", copy_tables(to, *next)?);
             // A program that has read the version in its transaction relies on it until that is over.
             to.batch("LOCK TABLE schema_version")?;
         }
@@ -59,7 +63,18 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
             to.execute(NOTE, values![*version, &sha256([schema]), now_ms]).map(drop)
         })
     };
-    database.transaction(change).map_err(refused)
+    database.transaction(change).map_err(refused)?;
+    if found > 0 {
+        let (database, newest) = (name(engine, path), SCHEMAS.len());
+        tracing::warn!("{database} has version {newest}; as it was, with version {found}, it is in {kept}");
+    }
+    Ok(())
+}
+
+/// What a database is called. Its folder may have another name soon, if it is restored.
+fn name(engine: Engine, path: &Path) -> String {
+    let shown = path.file_name().filter(|_| engine == Engine::Sqlite).map_or(path, Path::new);
+    shown.display().to_string()
 }
 
 /// Gives the number 0 to every run of a unit that checks shifts by its plan.
@@ -122,8 +137,8 @@ fn missing(bytes: u64, free: Option<u64>) -> u64 {
     free.map_or(0, |free| bytes.saturating_sub(free).div_ceil(1_000_000))
 }
 
-/// Copies `database`, the file `path`, to a file beside it, completely or not at all.
-fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), StoreError> {
+/// Copies `database`, the file `path`, to a file beside it, completely or not at all, and returns that file's path.
+fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<PathBuf, StoreError> {
     let aside = path.with_extension(format!("before-{version}.partial"));
     let folder = path.parent().unwrap_or(path);
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
@@ -137,7 +152,8 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
         generation::remove(&aside)?;
         File::open(&aside).and_then(|file| file.sync_all()).map_err(refused)?;
         let whole = free_name(path, version, &aside).map_err(refused)?;
-        fs::rename(&aside, &whole).map_err(refused)
+        fs::rename(&aside, &whole).map_err(refused)?;
+        Ok(whole)
     });
     if named.is_err() {
         // If this fails, the next attempt removes them first.
@@ -145,8 +161,9 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
             let _ = remove(left);
         }
     }
-    named?;
-    Ok(synced(folder)?)
+    let whole = named?;
+    synced(folder)?;
+    Ok(whole)
 }
 
 /// Makes the empty file `aside`, which whoever may read the file `path` may read, and nobody else, whatever the umask.
@@ -193,8 +210,8 @@ fn remove(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Copies every table of a plant into a schema of its own, in the transaction that changes them.
-fn copy_tables(to: &mut dyn Database, version: i64) -> Result<(), DatabaseError> {
+/// Copies every table of a plant into a schema of its own, in the transaction that changes them, and returns that schema's name.
+fn copy_tables(to: &mut dyn Database, version: i64) -> Result<String, DatabaseError> {
     let tables = "SELECT tablename::text FROM pg_tables WHERE schemaname = current_schema() ORDER BY 1";
     let tables: Vec<String> = to.all(tables, &[], |row| row.get(0))?;
     let taken: Vec<String> = to.all("SELECT nspname::text FROM pg_namespace", &[], |row| row.get(0))?;
@@ -202,7 +219,8 @@ fn copy_tables(to: &mut dyn Database, version: i64) -> Result<(), DatabaseError>
     let mut names = iter::once(first.clone()).chain((2..).map(|nth| format!("{first}_{nth}")));
     let copy = names.find(|name| !taken.contains(name)).unwrap_or_else(|| first.clone());
     to.batch(&format!("CREATE SCHEMA {copy}"))?;
-    tables.iter().try_for_each(|table| to.batch(&format!("CREATE TABLE {copy}.{table} AS TABLE {table}")))
+    tables.iter().try_for_each(|table| to.batch(&format!("CREATE TABLE {copy}.{table} AS TABLE {table}")))?;
+    Ok(copy)
 }
 
 /// Refuses a database if its `version` was made by another text.

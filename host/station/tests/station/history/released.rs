@@ -126,6 +126,30 @@ fn a_database_of_every_released_schema_opens_and_exports_the_same_bytes() {
     });
 }
 
+/// What is told of the upgrade of a database of this schema.
+fn upgraded(number: usize) -> String {
+    let next = number + 1;
+    if next > newest() {
+        return String::new();
+    }
+    format!(
+        " WARN station.db is upgraded, which takes a while if it is large\n WARN station.db has version {}; as it was, with \
+         version {number}, it is in station.before-{next}.db\n",
+        newest()
+    )
+}
+
+/// Figures may change with it, and whoever goes back looks for the copy.
+#[test]
+fn an_upgrade_is_told_once_with_what_is_kept_of_before() {
+    let data = left(1);
+    let call = || did(&data, &["prune", "--operator", "weber"]);
+    let (code, _, told) = call();
+    assert_eq!((code, told), (0, upgraded(1)));
+    let (code, _, told) = call();
+    assert!(code == 0 && told.is_empty(), "{told}");
+}
+
 /// The copy that is kept of a database with this schema.
 fn before(number: usize) -> Vec<String> {
     (number < newest()).then(|| format!("station.before-{}.db", number + 1)).into_iter().collect()
@@ -222,7 +246,7 @@ fn a_backup_of_every_released_schema_is_restored_and_stays_as_it_is() {
         let before = fs::read(backup.path().join("station.db")).unwrap();
         let new = place.path().join("new");
         let (code, said, complained) = did(&new, &["restore", backup.path().to_str().unwrap()]);
-        assert_eq!((code, complained.as_str()), (0, ""), "schema {number}: {said}");
+        assert_eq!((code, complained), (0, upgraded(number)), "schema {number}: {said}");
         assert!(said.starts_with("7 runs and "), "{said}");
         is_true_of(&new);
         assert_eq!(exported(&new), sums(), "schema {number}");
@@ -240,7 +264,7 @@ fn a_backup_of_every_released_schema_is_restored_and_stays_as_it_is() {
 fn a_backup_of_an_earlier_program_is_restored_into_a_folder_that_is_there() {
     let (backup, data) = (left(1), tempfile::tempdir().unwrap());
     let (code, said, complained) = did(&data, &["restore", backup.path().to_str().unwrap()]);
-    assert_eq!((code, complained.as_str()), (0, ""), "{said}");
+    assert_eq!((code, complained), (0, upgraded(1)), "{said}");
     assert_eq!(fs::read_to_string(data.path().join("station.lock")).unwrap(), "");
     let earlier = fs::metadata(data.path().join("station.before-2.db")).unwrap();
     assert_eq!(earlier.permissions().mode() & 0o777, 0o600);
