@@ -200,8 +200,8 @@ fn a_run_ends_at_its_time_limit() {
 /// No defect is reported, since the board's tables were not read back.
 #[test]
 fn what_differed_until_a_run_broke_off_is_told() {
-    let board = "mock,fault=stuck-data,bit=7,speed=100000";
-    let ended = halfrow(small("verify", &["--json", "--board", board, "--repeat", "40", "--timeout", "3"]));
+    let board = "mock,fault=stuck-data,bit=7,speed=10000";
+    let ended = halfrow(small("verify", &["--json", "--board", board, "--repeat", "40", "--timeout", "30"]));
     assert_eq!(ended.code, Some(3));
     let (said, headline) = (ended.json(), ended.json()["headline"].as_str().unwrap().to_owned());
     let frames = said["frames"].as_array().unwrap();
@@ -219,11 +219,11 @@ fn what_differed_until_a_run_broke_off_is_told() {
 #[test]
 fn a_run_whose_board_is_silent_when_its_time_ends_says_so() {
     let board = "mock,fault=stall,packet=300,seconds=60";
-    let ended = halfrow(small("verify", &["--json", "--board", board, "--timeout", "2"]));
+    let ended = halfrow(small("verify", &["--json", "--board", board, "--timeout", "5"]));
     assert_eq!(ended.code, Some(3));
     let headline = ended.json()["headline"].as_str().unwrap().to_owned();
     assert!(
-        headline.contains("within its time limit of 2.0 s, and no packet came in the last"),
+        headline.contains("within its time limit of 5.0 s, and no packet came in the last"),
         "{headline}"
     );
 }

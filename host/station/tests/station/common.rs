@@ -176,9 +176,11 @@ pub(crate) fn signal(process: u32, signal: Signal) {
     kill(Pid::from_raw(process.cast_signed()), signal).unwrap();
 }
 
-/// Whether there is a process of this number.
+/// Whether there is a process of this number that has not ended. Who ends may still wait for its parent, or for the first process,
+/// which need not look after it in a container.
 pub(crate) fn exists(process: u32) -> bool {
-    kill(Pid::from_raw(process.cast_signed()), None).is_ok()
+    let state = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    state.rsplit(')').next().is_some_and(|rest| !rest.is_empty() && !rest.trim_start().starts_with('Z'))
 }
 
 /// A process that is killed when it is dropped.

@@ -24,7 +24,7 @@ use crate::runs::outlived::Outlived;
 /// The settings, in `folder`, of a station whose lanes stay silent and cannot be killed, and their program.
 fn with_stuck_lanes(server: &Server, folder: &Path) -> (Settings, Stuck) {
     let path = settings(server, folder, "12");
-    instead(&path, "[station]", "[station]\nsilence = 5");
+    instead(&path, "[station]", "[station]\nsilence = 15");
     (Settings::load_without_lanes(&path).unwrap(), Stuck::in_folder(folder))
 }
 

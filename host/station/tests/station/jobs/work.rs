@@ -154,8 +154,9 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
         [["claimed", "2"], ["waiting", "1"]]
     );
     let connections = "SELECT count(*) FROM pg_stat_activity WHERE application_name = 'halfrow-station'";
-    // One connection for what each run holds, if they asked together, and one for what it sends.
-    assert!(["2", "3"].contains(&server.rows(connections)[0][0].as_str()));
+    // What each run holds is asked over one connection, and renewed over another; what is sent has one more.
+    let connections: u32 = server.rows(connections)[0][0].parse().unwrap();
+    assert!((2..=5).contains(&connections), "{connections}");
     signal(worker.id(), Signal::SIGTERM);
     let did = Did::from(worker.wait_with_output().unwrap());
     assert_eq!(did.code, Some(143), "{did:?}");

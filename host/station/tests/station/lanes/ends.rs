@@ -77,7 +77,7 @@ fn lanes_judge_at_once_and_every_verdict_has_its_record() {
 #[test]
 fn a_lane_that_hangs_is_killed_and_recorded_and_the_others_do_not_notice() {
     let (listener, target) = silent_board();
-    let station = Station::with(&[&target, "mock,serial=1"], "").with_silence(5);
+    let station = Station::with(&[&target, "mock,serial=1"], "").with_silence(15);
     let mut running = station.start();
     running.test("1", SERIALS[0]);
     connected(&listener);
@@ -87,7 +87,7 @@ fn a_lane_that_hangs_is_killed_and_recorded_and_the_others_do_not_notice() {
     running.test("2", SERIALS[1]);
     running.state("2", "PASS");
     let ended = running.state("1", "ERROR");
-    assert!(ended["shown"]["headline"].as_str().unwrap().contains("sent nothing for 5 s"), "{ended}");
+    assert!(ended["shown"]["headline"].as_str().unwrap().contains("sent nothing for 15 s"), "{ended}");
     assert!(!exists(lane), "it is gone");
     assert_eq!(station.query("SELECT cause FROM run WHERE lane = '1'"), ["crash"]);
     running.test("2", SERIALS[1]);

@@ -39,7 +39,7 @@ impl Drop for Stuck {
 /// Its result cannot be saved, either; after that is put right, the lane is still out of service.
 #[test]
 fn a_lane_whose_process_cannot_be_killed_is_out_though_its_result_was_not_saved() {
-    let station = Station::with(&["mock"], "").with_silence(5);
+    let station = Station::with(&["mock"], "").with_silence(15);
     let path = station.path("station.toml");
     let stuck = Stuck::in_folder(&station.path(""));
     let settings = Settings::load(&path).unwrap();

@@ -104,7 +104,7 @@ fn what_lanes_did_is_counted_and_promtool_finds_nothing_wrong() {
 fn a_lane_that_was_killed_and_a_result_that_is_not_saved_are_told() {
     let (listener, target) = silent_board();
     let station = Station::private(2)
-        .where_instead("station.toml", "data = \"data\"", "data = \"data\"\nsilence = 5")
+        .where_instead("station.toml", "data = \"data\"", "data = \"data\"\nsilence = 15")
         .where_instead("station.toml", "mock,serial=1", &target);
     let serving = station.serve();
     scan(&serving, "1", SERIALS[0]);

@@ -28,7 +28,7 @@ const PASSWORD: &str = "rosebud-5e1f";
 /// Debian puts it into a folder that is not on a user's path.
 const MOSQUITTO: &str = "PATH=\"$PATH:/usr/sbin:/usr/local/sbin\" exec mosquitto -c \"$0\"";
 /// For how many seconds the subscriber listens.
-const LONGEST: &str = "30";
+const LONGEST: &str = "120";
 
 impl Broker {
     /// A running broker, with the certificate in `certified` if there is one.

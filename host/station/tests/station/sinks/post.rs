@@ -46,7 +46,9 @@ impl Server {
 
     /// Makes it answer this from now on.
     pub(super) fn answers(&self, answer: &str) {
-        fs::write(self.folder.path().join("answer"), answer).unwrap();
+        let aside = self.folder.path().join("answer.aside");
+        fs::write(&aside, answer).unwrap();
+        fs::rename(aside, self.folder.path().join("answer")).unwrap();
     }
 
     /// What was posted since the last call.
