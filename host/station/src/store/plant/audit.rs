@@ -24,8 +24,6 @@ impl Plant {
         change: impl FnOnce(&mut dyn Database) -> Result<u64, DatabaseError>,
     ) -> Result<bool, StoreError> {
         let line = deed.at(clock::now_ms())?;
-        self.carry_out(doing, |database| {
-            database.transaction(|to| Ok(line.enter_if_done(to, &[], change)? > 0))
-        })
+        self.change(doing, |to| Ok(line.enter_if_done(to, &[], change)? > 0))
     }
 }

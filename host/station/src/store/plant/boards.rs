@@ -166,26 +166,24 @@ impl Plant {
     /// Like [`Self::share`].
     pub fn wait(&mut self, waiter: &Waiter) -> Result<Turn, StoreError> {
         let Waiter { id, kind, holder, station } = waiter;
-        self.carry_out("to give a board", |database| {
-            database.transaction(|to| {
-                shorten(to)?;
-                to.execute(sql::WAIT, values![id, kind, holder, WAITING_MS])?;
-                let queue = to.all(sql::QUEUE, values![kind, id], Queue::of)?;
-                let left = left_to_others(&queue, station);
-                let free: Option<String> =
-                    to.first(sql::FREE_BOARD, values![kind, station, left], |row| row.get(0))?;
-                let Some(name) = free else {
-                    let reachable: i64 = to.one(sql::REACHABLE, values![kind, station], |row| row.get(0))?;
-                    if reachable == 0 {
-                        to.execute(sql::FORGET_WAITERS, values![id])?;
-                        return Ok(Turn::Never);
-                    }
-                    let before: i64 = queue.iter().map(|queue| queue.waiting).sum();
-                    return Ok(Turn::Waits { before: u32::try_from(before).unwrap_or(u32::MAX) });
-                };
-                to.execute(sql::FORGET_WAITERS, values![id])?;
-                Ok(Turn::Held(hold(to, &name, holder)?))
-            })
+        self.change("to give a board", |to| {
+            shorten(to)?;
+            to.execute(sql::WAIT, values![id, kind, holder, WAITING_MS])?;
+            let queue = to.all(sql::QUEUE, values![kind, id], Queue::of)?;
+            let left = left_to_others(&queue, station);
+            let free: Option<String> =
+                to.first(sql::FREE_BOARD, values![kind, station, left], |row| row.get(0))?;
+            let Some(name) = free else {
+                let reachable: i64 = to.one(sql::REACHABLE, values![kind, station], |row| row.get(0))?;
+                if reachable == 0 {
+                    to.execute(sql::FORGET_WAITERS, values![id])?;
+                    return Ok(Turn::Never);
+                }
+                let before: i64 = queue.iter().map(|queue| queue.waiting).sum();
+                return Ok(Turn::Waits { before: u32::try_from(before).unwrap_or(u32::MAX) });
+            };
+            to.execute(sql::FORGET_WAITERS, values![id])?;
+            Ok(Turn::Held(hold(to, &name, holder)?))
         })
     }
 
@@ -194,7 +192,7 @@ impl Plant {
     /// # Errors
     /// Like [`Self::share`].
     pub fn leave(&mut self, waiter: &Waiter) -> Result<(), StoreError> {
-        self.carry_out("to forget who waits", |to| to.execute(sql::FORGET_WAITERS, values![&waiter.id]))
+        self.change("to forget who waits", |to| to.execute(sql::FORGET_WAITERS, values![&waiter.id]))
             .map(drop)
     }
 
@@ -204,7 +202,7 @@ impl Plant {
     /// Like [`Self::share`].
     pub fn renew(&mut self, lease: &Lease) -> Result<bool, StoreError> {
         let Lease { board, holder, fence, .. } = lease;
-        let renewed = self.carry_out("to let a board be held", |to| {
+        let renewed = self.change("to let a board be held", |to| {
             to.execute(sql::RENEW_BOARD, values![LEASE_MS, board, holder, *fence])
         })?;
         Ok(renewed == 1)
@@ -218,7 +216,7 @@ impl Plant {
         let Lease { board, holder, fence, .. } = lease;
         let back =
             |to: &mut dyn Database| to.execute(sql::RETURN_BOARD, values![board, holder, *fence]).map(drop);
-        self.carry_out("to take a board back", back)
+        self.change("to take a board back", back)
     }
 }
 

@@ -197,7 +197,7 @@ impl Plant {
     /// # Errors
     /// Like [`Self::add_jobs`].
     pub fn claim(&mut self, worker: &Worker) -> Result<Option<Claim>, StoreError> {
-        self.carry_out("to give a job", |database| database.transaction(|to| claimed(to, worker)))
+        self.change("to give a job", |to| claimed(to, worker))
     }
 
     /// Renews the leases of a job and its board. Returns whether both are still held.
@@ -206,7 +206,7 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn renew_claim(&mut self, claim: &Claim) -> Result<bool, StoreError> {
         let Claim { job, fence, lease, .. } = claim;
-        let renewed = self.carry_out("to let a job be held", |to| {
+        let renewed = self.change("to let a job be held", |to| {
             to.execute(sql::RENEW_JOB, values![LEASE_MS, job, &lease.holder, *fence])
         })?;
         Ok(renewed == 1 && self.renew(lease)?)
@@ -218,7 +218,7 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn decline(&mut self, claim: &Claim, said: Option<&str>) -> Result<(), StoreError> {
         let Claim { job, fence, lease, .. } = claim;
-        self.carry_out("to take a job back", |to| {
+        self.change("to take a job back", |to| {
             to.execute(sql::RETURN_JOB, values![said, job, &lease.holder, *fence])
         })?;
         self.give_back(lease)
@@ -230,7 +230,7 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn fail(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
         let Claim { job, fence, .. } = claim;
-        self.carry_out("to take a job back", |to| to.execute(sql::JOB_BACK, values![said, *fence, job]))
+        self.change("to take a job back", |to| to.execute(sql::JOB_BACK, values![said, *fence, job]))
             .map(drop)
     }
 
@@ -254,7 +254,7 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn refuse(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
         let Claim { job, fence, .. } = claim;
-        self.carry_out("to end a job", |to| to.execute(sql::REFUSE_JOB, values![said, job, *fence])).map(drop)
+        self.change("to end a job", |to| to.execute(sql::REFUSE_JOB, values![said, job, *fence])).map(drop)
     }
 
     /// Whether a run counts; none if it is not there.

@@ -185,18 +185,18 @@ impl Plant {
     pub fn take(&mut self, parcel: &Parcel) -> Result<(), PlantError> {
         match parcel {
             Parcel::Run { record, text, sha256 } => {
-                self.bring("a run", |to| arrived::run(to, record, text, sha256))?;
+                self.change("a run", |to| arrived::run(to, record, text, sha256))?;
                 self.read_back_run(&record.run.id, sha256)
             }
             Parcel::Waiver { id, waiver } => {
                 if self.hash_of(&waiver.run)?.is_none() {
                     return Err(PlantError::NotYet { run: waiver.run.clone() });
                 }
-                self.bring("a waiver", |to| arrived::waiver(to, id, waiver))?;
+                self.change("a waiver", |to| arrived::waiver(to, id, waiver))?;
                 self.read_back(sql::WAIVER_BY_ID, id)
             }
             Parcel::Audit(line) => {
-                let is_entered = self.bring("a line of the audit", |to| arrived::audit(to, line))?;
+                let is_entered = self.change("a line of the audit", |to| arrived::audit(to, line))?;
                 if let Some([product, serial]) = line.unit.as_ref().filter(|_| !is_entered) {
                     return Err(PlantError::NotYet { run: format!("of {product} {serial}") });
                 }
@@ -294,9 +294,9 @@ impl Plant {
         found.ok_or_else(|| PlantError::NotKept { subject: subject.to_owned() })
     }
 
-    /// Enters what a station sends, in a transaction that checks the version of the tables: they may have been brought up to date
-    /// since the connection was made, and this program does not know what to enter in others.
-    fn bring<T>(
+    /// Changes what the plant has, in a transaction that checks the version of the tables: they may have been upgraded since the
+    /// connection was made, and this program does not know what belongs in others.
+    fn change<T>(
         &mut self,
         doing: &'static str,
         act: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,

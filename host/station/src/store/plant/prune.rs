@@ -26,11 +26,9 @@ impl Plant {
                 database.one(sql::NEXT_RUNS, values![&after, &bound], |row| row.get(0))
             })?;
             let Some(last) = last else { return Ok(removed) };
-            removed += self.carry_out("to be pruned", |database| {
-                database.transaction(|to| {
-                    let steps = to.execute(sql::PRUNE_STEPS, values![&after, &last])?;
-                    Ok(steps + to.execute(sql::PRUNE_MEASUREMENTS, values![&after, &last])?)
-                })
+            removed += self.change("to be pruned", |to| {
+                let steps = to.execute(sql::PRUNE_STEPS, values![&after, &last])?;
+                Ok(steps + to.execute(sql::PRUNE_MEASUREMENTS, values![&after, &last])?)
             })?;
             told(Progress {
                 what: "rows removed",

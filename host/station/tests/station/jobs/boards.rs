@@ -4,10 +4,10 @@ use std::io::{BufRead as _, BufReader, Lines};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::thread;
 
-use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
+use halfrow_station::store::{Plant, SharedBoard, StoreError, Turn, Waiter};
 use serde_json::Value;
 
-use super::{add, board, run_out, settings, shared, with_a_job, worker};
+use super::{add, board, run_out, settings, shared, states, with_a_job, worker};
 use crate::clocks::Clocks;
 use crate::common::{Killed, did_in, engel, now_ms, program, reason, until};
 use crate::plant::server::Server;
@@ -295,4 +295,29 @@ fn whoever_waits_for_a_board_goes_on_when_the_plant_was_away() {
     drop(first.stdin.take());
     assert!(first.process.wait().unwrap().success());
     assert_eq!(second.tells("held")["fence"], 2);
+}
+
+/// It would claim the same job until that is dead, since it cannot renew its lease over a new connection.
+#[test]
+fn a_program_that_is_older_than_the_tables_takes_no_job_and_no_board_over_the_connection_that_it_has() {
+    let (server, mut plant, id) = with_a_job();
+    let upgraded = || server.change("INSERT INTO schema_version VALUES (99, 'x', 1)");
+    upgraded();
+    let refused = [
+        plant.claim(&worker("12")).unwrap_err(),
+        plant.wait(&waiter("somebody")).unwrap_err(),
+        plant.cancel_job(&id, engel(&reason("a mistake"))).unwrap_err(),
+    ];
+    for refused in refused {
+        assert!(matches!(refused, StoreError::Newer { found: 99, .. }), "{refused:?}");
+    }
+    assert_eq!(states(&server), [["waiting", "0"]]);
+    server.change("DELETE FROM schema_version WHERE n = 99");
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    upgraded();
+    let refused = [plant.renew_claim(&claim).unwrap_err(), plant.decline(&claim, None).unwrap_err()];
+    for refused in refused {
+        assert!(matches!(refused, StoreError::Newer { found: 99, .. }), "{refused:?}");
+    }
+    assert_eq!(states(&server), [["claimed", "1"]]);
 }
