@@ -80,7 +80,28 @@ fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<Pla
                 " " a href="/history" { (visit.say("history.all")) }
             }
         }
+        (asked_for(visit, asked, &[
+            (visit.say("history.serial"), &asked.serial),
+            (visit.say("history.verdict"), &asked.verdict),
+            (visit.say("history.operator"), &asked.operator),
+        ]))
     }
+}
+
+/// What the form asks for, for paper, where there is no form: the page's `own` fields, and those of every page.
+pub(super) fn asked_for(visit: &Visit, asked: &RunFilter, own: &[(&str, &str)]) -> Markup {
+    let common: [(&str, &str); 6] = [
+        (visit.say("nav.station"), &asked.station),
+        (visit.say("history.product"), &asked.product),
+        (visit.say("history.plan"), &asked.plan),
+        (visit.say("history.lane"), &asked.lane),
+        (visit.say("history.from"), &asked.from),
+        (visit.say("history.until"), &asked.until),
+    ];
+    let colon = visit.say("told.colon");
+    let told = own.iter().chain(&common).filter(|(_, value)| !value.trim().is_empty());
+    let told: Vec<_> = told.map(|(label, value)| format!("{label}{colon}{value}")).collect();
+    html! { @if !told.is_empty() { p.asked { (show::said(&told.join(" · "))) } } }
 }
 
 /// The fields that runs, yields and failures have in common: a plant's station, product, plan, lane, first and last day.

@@ -26,7 +26,7 @@ pub(super) async fn page(
     let (found, plans) = app.look(&visit, look).await?;
     let content = html! {
         h1 { (visit.say("pareto.title")) }
-        (yields::form(&visit, ("/pareto", &yields::choice(&visit, by, word)), &asked, &list::lanes(&app), &plans))
+        (yields::form(&visit, ("/pareto", by, word), &asked, &list::lanes(&app), &plans))
         @if found.judged == 0 {
             p.nothing { (visit.say("pareto.none")) }
         } @else {

@@ -50,7 +50,7 @@ pub(super) async fn page(
     let content = html! {
         h1 { (visit.say("yield.title")) }
         p.soft { (visit.say("yield.about")) }
-        (form(&visit, ("/yield", &choice(&visit, by, word)), &asked, &list::lanes(&app), &plans))
+        (form(&visit, ("/yield", by, word), &asked, &list::lanes(&app), &plans))
         @if lines.is_empty() {
             p.nothing { (visit.say("history.none")) }
         } @else {
@@ -64,25 +64,26 @@ pub(super) async fn page(
     Ok(page.answer(&visit))
 }
 
-/// The form of the page at `address`, whose lines are those of `choice`.
-pub(super) fn form(
+/// The form of the page at `address`, which has a line for each `by`, and on paper what it was asked for.
+pub(super) fn form<T: Copy + ValueEnum + PartialEq>(
     visit: &Visit,
-    (address, choice): (&str, &Markup),
+    (address, by, word): (&str, T, fn(&Visit, T) -> &'static str),
     asked: &RunFilter,
     lanes: &[String],
     plans: &BTreeSet<PlanName>,
 ) -> Markup {
     html! {
         form.filters method="get" action=(address) {
-            (choice)
+            (choice(visit, by, word))
             (list::common(visit, asked, lanes, plans))
             span.acts { button { (visit.say("history.show")) } " " a href=(address) { (visit.say("history.all")) } }
         }
+        (list::asked_for(visit, asked, &[(visit.say("history.by"), word(visit, by))]))
     }
 }
 
 /// The choice of what there is a line for.
-pub(super) fn choice<T: Copy + ValueEnum + PartialEq>(
+fn choice<T: Copy + ValueEnum + PartialEq>(
     visit: &Visit,
     by: T,
     word: fn(&Visit, T) -> &'static str,

@@ -6,5 +6,6 @@ mod figures;
 mod live;
 mod look;
 mod proxied;
+mod read;
 mod scans;
 mod told;
