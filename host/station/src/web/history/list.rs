@@ -162,10 +162,15 @@ fn row(visit: &Visit, run: &RunLine) -> Markup {
             td.serial { a href=(unit_address(&run.serial)) { (show::said(&run.serial)) } }
             td.outcome { (show::outcome(visit, run)) }
             td.plan { (show::said(&run.plan)) " " (show::said(&run.version)) }
-            @if visit.is_plant { td.lane { (show::said(&run.station)) } }
-            td.lane { span.of-card { (visit.say("history.lane")) " " } (show::said(&run.lane)) }
-            td.operator { (show::said(&run.operator)) }
+            @if visit.is_plant { td.lane { (of_card(visit.say("nav.station"))) (show::said(&run.station)) } }
+            td.lane { (of_card(visit.say("history.lane"))) (show::said(&run.lane)) }
+            td.operator { (of_card(visit.say("history.operator"))) (show::said(&run.operator)) }
             td.headline { @if let Some(headline) = &run.headline { (show::english(visit, headline)) } }
         }
     }
+}
+
+/// What a cell of a card is, whose column is not seen.
+fn of_card(label: &str) -> Markup {
+    html! { span.of-card { (label) " " } }
 }

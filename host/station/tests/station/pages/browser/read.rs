@@ -25,6 +25,17 @@ fn opened(page: &mut Chromium, serving: &Serving, path: &str) {
     page.wait(&format!("document.readyState === 'complete' && location.href === '{address}'"));
 }
 
+/// The names of everything in the page that has this role for those who do not see it, in alphabetical order.
+fn named(page: &mut Chromium, role: &str) -> Vec<String> {
+    let tree = page.call("Accessibility.getFullAXTree", json!({}));
+    let nodes = tree["nodes"].as_array().unwrap().iter();
+    let is_wanted = |node: &&Value| node["role"]["value"] == role && node["ignored"] == false;
+    let name = |node: &Value| node["name"]["value"].as_str().unwrap_or_default().to_owned();
+    let mut names: Vec<_> = nodes.filter(is_wanted).map(name).collect();
+    names.sort_unstable();
+    names
+}
+
 /// The form is not printed, and nothing else says of what the figures are.
 #[test]
 fn what_was_asked_for_is_on_paper() {
@@ -53,5 +64,22 @@ fn what_was_asked_for_is_on_paper() {
         page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
         assert_eq!(page.evaluate(visible), if is_asked { json!(true) } else { Value::Null }, "{path}");
         assert_eq!(page.evaluate("document.querySelector('.asked')?.innerText ?? null"), asked, "{path}");
+    }
+}
+
+/// Up to 1280 pixels a run is a card, whose cells are as many as the table's columns.
+#[test]
+fn a_screen_reader_says_the_columns_of_cards() {
+    let (_station, serving, _) = failed();
+    let mut page = Chromium::open("about:blank");
+    for width in [390, 1024, 1920] {
+        let size = json!({ "width": width, "height": 844, "deviceScaleFactor": 1, "mobile": false });
+        page.call("Emulation.setDeviceMetricsOverride", size);
+        opened(&mut page, &serving, "/history");
+        let columns = ["Began (UTC)", "Lane", "Operator", "Plan", "Result", "Serial number", "Verdict"];
+        assert_eq!(named(&mut page, "columnheader"), columns, "{width}");
+        let cells = "['lane', 'operator'].map(cell => document.querySelector(`.runs td.${cell}`).innerText)";
+        let card = if width > 1280 { ["1", "weber"] } else { ["Lane 1", "Operator weber"] };
+        assert_eq!(page.evaluate(cells), json!(card), "{width}");
     }
 }
