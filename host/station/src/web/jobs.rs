@@ -85,7 +85,7 @@ fn state_word(visit: &Visit, state: JobState) -> &'static str {
 
 fn table(visit: &Visit, jobs: &[Job]) -> Markup {
     html! {
-        div.wide tabindex="0" { table.runs {
+        div.wide tabindex="0" role="region" aria-label=(visit.say("jobs.title")) { table.runs {
             thead { tr {
                 th { (visit.say("jobs.added")) } th { (visit.say("jobs.board")) } th { (visit.say("history.plan")) }
                 th.number { (visit.say("jobs.priority")) } th { (visit.say("plant.state")) }
@@ -127,7 +127,7 @@ fn unit(serial: &str) -> Markup {
 
 fn shelf(visit: &Visit, boards: &[SharedBoard]) -> Markup {
     html! {
-        div.wide tabindex="0" { table.runs {
+        div.wide tabindex="0" role="region" aria-label=(visit.say("jobs.boards")) { table.runs {
             thead { tr {
                 th { (visit.say("jobs.board")) } th { (visit.say("jobs.kind")) } th { (visit.say("jobs.place")) }
                 th { (visit.say("history.serial")) } th { (visit.say("nav.station")) } th { (visit.say("plant.state")) }

@@ -56,7 +56,7 @@ async fn shown(app: App, visit: Visit, refused: Option<Refused>) -> Result<Respo
 
 fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
     html! {
-        div.wide tabindex="0" { table.runs {
+        div.wide tabindex="0" role="region" aria-label=(visit.say("outbox.title")) { table.runs {
             thead { tr {
                 th { (visit.say("outbox.sink")) } th.number { (visit.say("outbox.entries")) }
                 th.number { (visit.say("outbox.waits")) } th { (visit.say("outbox.since")) }

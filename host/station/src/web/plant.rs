@@ -38,7 +38,7 @@ async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble>
 
 fn table(visit: &Visit, stations: &[Station], ambiguous: &[String]) -> Markup {
     html! {
-        div.wide tabindex="0" { table.runs {
+        div.wide tabindex="0" role="region" aria-label=(visit.say("plant.stations")) { table.runs {
             thead { tr {
                 th { (visit.say("nav.station")) } th { (visit.say("plant.state")) } th { (visit.say("plant.seen")) }
                 th { (visit.say("history.last")) } th.number { (visit.say("outbox.entries")) }
@@ -52,7 +52,7 @@ fn table(visit: &Visit, stations: &[Station], ambiguous: &[String]) -> Markup {
 /// The plans that hold.
 fn published(visit: &Visit, plans: &[(Statement, i64)]) -> Markup {
     html! {
-        div.wide tabindex="0" { table.runs {
+        div.wide tabindex="0" role="region" aria-label=(visit.say("plant.published")) { table.runs {
             thead { tr {
                 th { (visit.say("history.plan")) } th { (visit.say("plant.version")) }
                 th.number { (visit.say("plant.number")) } th { (visit.say("outbox.since")) }

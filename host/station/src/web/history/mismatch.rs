@@ -14,7 +14,7 @@ pub(in crate::web) fn table<'a>(visit: &Visit, mismatches: impl IntoIterator<Ite
         @if rows.peek().is_some() {
             h2 { (visit.say("mismatch.title")) }
             p.soft { (visit.say("mismatch.about")) }
-            div.wide tabindex="0" { table.bindings {
+            div.wide tabindex="0" role="region" aria-label=(visit.say("mismatch.title")) { table.bindings {
                 thead { tr {
                     th { (visit.say("nav.station")) } th { (visit.say("history.device")) }
                     th { (visit.say("mismatch.judged")) } th { (visit.say("history.last")) }

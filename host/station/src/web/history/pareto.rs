@@ -62,7 +62,7 @@ fn word(visit: &Visit, by: Of) -> &'static str {
 fn table(visit: &Visit, found: &Pareto) -> Markup {
     let most = found.bars.first().map_or(0, |bar| bar.runs.count);
     html! {
-        div.wide tabindex="0" { table.pareto {
+        div.wide tabindex="0" role="region" aria-label=(visit.say("pareto.title")) { table.pareto {
             thead { tr {
                 th { (visit.say("pareto.what")) } th { (visit.say("pareto.runs")) }
                 th { (visit.say("pareto.share")) } th.number { (visit.say("yield.units")) }

@@ -229,7 +229,9 @@ fn not_exercised(visit: &Visit, record: &Record) -> Markup {
 fn steps(visit: &Visit, record: &Record) -> Markup {
     html! {
         h2 { (visit.say("run.steps")) }
-        div.wide tabindex="0" { table.steps { tbody { @for step in &record.steps { (step_row(visit, step, record.took_for(step))) } } } }
+        div.wide tabindex="0" role="region" aria-label=(visit.say("run.steps")) {
+            table.steps { tbody { @for step in &record.steps { (step_row(visit, step, record.took_for(step))) } } }
+        }
     }
 }
 
@@ -277,8 +279,9 @@ fn checks(visit: &Visit, record: &Record) -> Markup {
         .filter_map(|step| Some((step, step.evidence.as_ref()?.get("checks")?.as_array()?)));
     html! {
         @for (step, checks) in all {
-            h2 { (show::said(&visit.words.fill("run.checks", &[("step", &step.name)]))) }
-            div.wide tabindex="0" { table.checks { tbody { @for check in checks { tr {
+            @let title = visit.words.fill("run.checks", &[("step", &step.name)]);
+            h2 { (show::said(&title)) }
+            div.wide tabindex="0" role="region" aria-label=(show::said(&title)) { table.checks { tbody { @for check in checks { tr {
                 th scope="row" { (show::said(&text(check, "name"))) }
                 td {
                     // The report calls outcomes as the record does.
@@ -307,7 +310,7 @@ fn measurements(visit: &Visit, record: &Record) -> Markup {
     html! {
         @if !all.is_empty() {
             h2 { (visit.say("run.measurements")) }
-            div.wide tabindex="0" { table.measurements {
+            div.wide tabindex="0" role="region" aria-label=(visit.say("run.measurements")) { table.measurements {
                 thead { tr {
                     th { (visit.say("run.measurement")) } th.number { (visit.say("run.value")) } th { (visit.say("run.limit")) }
                     th { (visit.say("run.came")) } th { (visit.say("run.step")) }

@@ -131,7 +131,7 @@ fn devices(visit: &Visit, bindings: &[Binding]) -> Markup {
     html! {
         @if !bindings.is_empty() {
             h2 { (visit.say("history.devices")) }
-            div.wide tabindex="0" { table.bindings {
+            div.wide tabindex="0" role="region" aria-label=(visit.say("history.devices")) { table.bindings {
                 thead { tr {
                     th { (visit.say("history.device")) } th { (visit.say("history.from")) }
                     th { (visit.say("history.to")) } th { (visit.say("history.operator")) }

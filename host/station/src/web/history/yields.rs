@@ -110,11 +110,13 @@ fn word(visit: &Visit, by: By) -> &'static str {
 
 /// First pass by day, the plans one below the other.
 fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
+    let (first, colon) = (visit.say("yield.first"), visit.say("told.colon"));
     html! {
         @for of_plan in lines.chunk_by(|one, other| one.plan == other.plan) {
+            @let title = format!("{first}{colon}{}", of_plan[0].plan.plan);
             figure.days {
-                figcaption { (visit.say("yield.first")) (visit.say("told.colon")) (show::said(&of_plan[0].plan.plan)) }
-                div.wide tabindex="0" { (bars::days(visit, visit.say("yield.first"), &named_days(visit, of_plan))) }
+                figcaption { (show::said(&title)) }
+                div.wide tabindex="0" role="region" aria-label=(show::said(&title)) { (bars::days(visit, first, &named_days(visit, of_plan))) }
                 (beyond(visit, of_plan))
             }
         }
@@ -180,7 +182,7 @@ fn table(visit: &Visit, by: By, lines: &[Yield]) -> Markup {
     of.extend((by != By::Plan).then(|| word(visit, By::Plan)));
     let of = of.join(visit.say("told.list"));
     html! {
-        div.wide tabindex="0" { table.yields {
+        div.wide tabindex="0" role="region" aria-label=(visit.say("yield.title")) { table.yields {
             thead { tr {
                 th { (of) } th.number { (visit.say("yield.units")) }
                 th { (visit.say("yield.first")) } th { (visit.say("yield.last")) }
@@ -231,11 +233,12 @@ fn rate(visit: &Visit, rate: &Rate) -> Markup {
 }
 
 fn flipped(visit: &Visit, flips: &[Flip]) -> Markup {
+    let title = visit.words.fill("yield.flips", &[("units", &flips.len().to_string())]);
     html! {
-        h2 { (visit.words.fill("yield.flips", &[("units", &flips.len().to_string())])) }
+        h2 { (title) }
         @if flips.is_empty() { p.soft { (visit.say("yield.no_flips")) } } @else {
             p.soft { (visit.say("yield.flips_about")) }
-            div.wide tabindex="0" { table.flips {
+            div.wide tabindex="0" role="region" aria-label=(title) { table.flips {
                 thead { tr {
                     th { (visit.say("history.serial")) } th { (visit.say("history.plan")) }
                     th { "FAIL" } th { "PASS" } th.number { (visit.say("yield.judgements")) }

@@ -83,3 +83,20 @@ fn a_screen_reader_says_the_columns_of_cards() {
         assert_eq!(page.evaluate(cells), json!(card), "{width}");
     }
 }
+
+/// What is moved sideways is a stop of the keyboard.
+#[test]
+fn a_screen_reader_says_at_which_table_the_keyboard_is() {
+    let (_station, serving, run) = failed();
+    let mut page = Chromium::open("about:blank");
+    for (path, names) in [
+        (format!("/runs/{run}"), &["Checks, verify", "Measurements", "Steps"][..]),
+        ("/yield?by=day".to_owned(), &["First pass: quick", "Yield"]),
+        ("/pareto".to_owned(), &["What fails most"]),
+    ] {
+        opened(&mut page, &serving, &path);
+        assert_eq!(named(&mut page, "region"), names, "{path}");
+        let stops = page.evaluate("document.querySelectorAll('[tabindex]').length");
+        assert_eq!(stops, json!(names.len()), "{path}");
+    }
+}
