@@ -47,6 +47,7 @@ impl Words {
             "board.no_hardware" => Some(self.no_hardware(parameters).to_owned()),
             "doing" => self.refused_by_plant(value?).or_else(own),
             "table" => self.table(value?).or_else(own),
+            "link" => self.link(value?).or_else(own),
             _ => own(),
         }
     }
@@ -98,6 +99,16 @@ impl Words {
             _ => return None,
         };
         Some(words.to_owned())
+    }
+
+    /// The name of a link, where it is more than what the link is plugged into.
+    fn link(&self, link: &Value) -> Option<String> {
+        let link = link.as_str()?;
+        if let Some(address) = link.strip_prefix("the connection to ") {
+            return Some(self.fill("told.connection", &[("address", address)]));
+        }
+        let (path, rate) = link.strip_prefix("the serial port ")?.rsplit_once(" (")?;
+        Some(self.fill("told.serial-port", &[("path", path), ("baud", rate.strip_suffix(" baud)")?)]))
     }
 
     /// The memory of a table.

@@ -144,6 +144,37 @@ fn samples_that_differed_by_the_end_of_a_run_are_told_in_every_language() {
     );
 }
 
+/// As their links call themselves: the one of a socket is asked here, the other one is what `halfrow verify` prints.
+#[test]
+fn the_names_of_links_are_told_in_the_language() {
+    let listening = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let at = listening.local_addr().unwrap();
+    let link = halfrow::link::open(&format!("tcp:{at}").parse().unwrap()).unwrap().link;
+    let told = |language, code: &str, link: &str| {
+        let told = of(Some(language), None).tell(&judged(code, &json!({ "link": link, "at": 11.069_952 })));
+        assert_eq!(told.foreign, None);
+        told.text.split([';', '；']).next().unwrap().to_owned()
+    };
+    let [socket, serial] = [link.name(), "the serial port /dev/ttyUSB0 (115200 baud)".to_owned()];
+    for (language, code, name, text) in [
+        ("de", "link-closed", &socket, format!("die Verbindung zu {at} wurde nach 11,1 s geschlossen")),
+        ("de", "link-without-board", &socket, format!("die Verbindung zu {at} führt zu keiner Platine")),
+        (
+            "de",
+            "link-failed",
+            &serial,
+            "der serielle Anschluss /dev/ttyUSB0 (115200 Baud) fiel nach 11,1 s aus".to_owned(),
+        ),
+        ("zh", "link-closed", &socket, format!("连接 {at} 在 11.1 秒时关闭")),
+        ("zh", "link-without-board", &socket, format!("连接 {at} 后面没有板卡")),
+        ("zh", "link-failed", &serial, "115200 波特的串口 /dev/ttyUSB0 在 11.1 秒时故障".to_owned()),
+        ("de", "link-closed", &"usb:1".to_owned(), "usb:1 wurde nach 11,1 s geschlossen".to_owned()),
+        ("zh", "link-closed", &"usb:1".to_owned(), "usb:1 在 11.1 秒时关闭".to_owned()),
+    ] {
+        assert_eq!(told(language, code, name), text);
+    }
+}
+
 /// A bit that is one of several alike, and a suspect that is one of several; records of earlier programs have neither.
 #[test]
 fn what_is_one_of_several_is_not_told_as_the_fact_in_any_language() {
