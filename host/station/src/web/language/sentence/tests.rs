@@ -175,6 +175,19 @@ fn the_names_of_links_are_told_in_the_language() {
     }
 }
 
+/// That the board counts the row shows that it, and no cable, lost it.
+#[test]
+fn a_swallowed_row_is_told_with_what_shows_that_the_board_lost_it() {
+    let swallowed = judged("row-swallowed", &json!({ "row": 16, "frame": 0, "again": 17 }));
+    for (language, end) in [
+        ("de", "ging nur Zeile 17 verloren, obwohl die Platine sie als empfangen zählt"),
+        ("zh", "只有第 17 行丢失，而板卡将其计为已收到"),
+    ] {
+        let told = of(Some(language), None).tell(&swallowed).text;
+        assert!(told.ends_with(end), "{told}");
+    }
+}
+
 /// A bit that is one of several alike, and a suspect that is one of several; records of earlier programs have neither.
 #[test]
 fn what_is_one_of_several_is_not_told_as_the_fact_in_any_language() {
