@@ -159,6 +159,9 @@ fn without_a_script_nothing_that_is_typed_is_thrown_away() {
     );
 }
 
+/// A sheet of A4 without its margins, in CSS pixels.
+const A4: (u32, u32) = (718, 1046);
+
 /// Which parts of the page are printed, and how.
 fn on_paper(page: &mut Chromium, address: &str) -> Value {
     page.go(address);
@@ -183,8 +186,38 @@ fn on_paper_verdicts_keep_their_ground_and_no_column_is_cut_off() {
     let history = on_paper(&mut page, &at("/history"));
     assert_eq!(history, json!(["exact", "none", null, "none"]));
     assert_eq!(on_paper(&mut page, &at("/yield?by=day")), json!([null, "none", "visible", "none"]));
-    // A4 without its margins, in CSS pixels.
-    let size = json!({ "width": 718, "height": 1046, "deviceScaleFactor": 1, "mobile": false });
+    let (width, height) = A4;
+    let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
     page.call("Emulation.setDeviceMetricsOverride", size);
     assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
+}
+
+/// What is told of a lane that is not whole on paper: nobody can follow a link there.
+const CUT_ON_PAPER: &str = "(() => {
+    const isCut = part => part.scrollWidth > part.clientWidth + 1 || part.scrollHeight > part.clientHeight + 1;
+    return [...document.querySelectorAll('.lane')].flatMap(lane => {
+        const end = lane.getBoundingClientRect().bottom + 1;
+        const parts = [...lane.querySelectorAll('.why, .asks, .does, .doing')];
+        const bad = parts.filter(part => !part.checkVisibility() || isCut(part) || part.getBoundingClientRect().bottom > end);
+        return bad.map(part => `${lane.id}: ${part.textContent}`);
+    });
+})()";
+
+#[test]
+fn on_paper_what_was_found_in_a_lane_is_whole() {
+    for lanes in [8, 16] {
+        let station = station(lanes);
+        let serving = station.serve();
+        let here = serving.here();
+        for (serial, lane) in SERIALS.iter().zip(["1", "2", "3"]) {
+            scan(&here, serial, lane);
+        }
+        let mut page = Chromium::live(&serving);
+        page.wait("document.querySelector('#lane-3.error .asks') && document.querySelector('#lane-2.fail .why') && true");
+        for language in ["en", "de", "zh"] {
+            page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
+            shown(&mut page, &serving, language, A4);
+            assert_eq!(page.evaluate(CUT_ON_PAPER), json!([]), "{lanes} {language}");
+        }
+    }
 }
