@@ -61,6 +61,19 @@ const CUT: &str = "(() => {
     return found;
 })()";
 
+/// Short names of lanes that are broken, or of which the button beside them is cut off.
+const BROKEN: &str =
+    "[...document.querySelectorAll('.lane')].flatMap(lane => ['', 'MAT-9'].flatMap(other => {
+    const word = {de: 'abbrechen', zh: '中止'}[document.documentElement.lang] ?? 'abort';
+    lane.querySelector('.acts').innerHTML = `<form class=act><button>${word}</button></form>`;
+    const [name, text] = [lane.querySelector('.name'), document.createRange()];
+    name.textContent = other || name.textContent;
+    text.selectNodeContents(name);
+    const button = lane.querySelector('.act button').getBoundingClientRect();
+    const isCut = button.right > lane.getBoundingClientRect().right - lane.clientLeft;
+    return isCut || text.getClientRects().length > 1 ? [`${lane.id} ${other}`] : [];
+}))";
+
 #[test]
 fn what_to_do_is_shown_whole_on_every_screen_and_in_every_language() {
     for lanes in [8, 16] {
@@ -83,6 +96,7 @@ fn what_to_do_is_shown_whole_on_every_screen_and_in_every_language() {
             ] {
                 shown(&mut page, &serving, language, size);
                 assert_eq!(page.evaluate(CUT), json!([]), "{lanes} {language} {size:?}");
+                assert_eq!(page.evaluate(BROKEN), json!([]), "{lanes} {language} {size:?}");
                 let said = "document.querySelector('#lane-3 .asks').textContent.replaceAll('`', '')";
                 assert_eq!(page.evaluate(said), json!(asked));
                 // It is only said once.
