@@ -53,14 +53,7 @@ pub(super) struct Day {
 /// A column for each day of a yield, the earliest first: share and interval, in the band of what they may be. `of` says what
 /// the shares are of.
 pub(super) fn days(visit: &Visit, of: &str, days: &[Day]) -> Markup {
-    let low = |day: &Day| day.rate.interval.map(|[low, _]| low);
-    let limit = |day: &Day| day.limits.map(|Limits { limits: [low, _], .. }| low);
-    let shares = days.iter().filter_map(|day| day.rate.share);
-    // The interval of a day with few units would leave no room for the others; it is cut off where the chart ends.
-    let many = days.iter().filter(|day| day.rate.of >= FEW).flat_map(|day| [low(day), limit(day)]).flatten();
-    // Where shares are high, the lower part of the chart would be empty.
-    let floors = |least: f64| [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least);
-    let floor = shares.chain(many).reduce(f64::min).and_then(floors).unwrap_or(0.0);
+    let floor = floor(days);
     let width = days.len() * DAY + BESIDE;
     let y = |share: f64| 8.0 + 100.0 * (1.0 - share.max(floor)) / (1.0 - floor);
     let last = days.len().saturating_sub(1);
@@ -71,7 +64,7 @@ pub(super) fn days(visit: &Visit, of: &str, days: &[Day]) -> Markup {
                 text x=(days.len() * DAY + 4) y=(format!("{:.1}", y(share) + 4.0)) { (show::number(visit, 100.0 * share)) " %" }
             }
             @for (place, one) in days.iter().enumerate() {
-                (day(place * DAY, one, &y))
+                (day(place * DAY, one, floor, &y))
                 @if place == 0 { text x="0" y=(HEIGHT - 4) { (one.name) } }
                 @if place == last && last > 14 {
                     text x=(days.len() * DAY) y=(HEIGHT - 4) text-anchor="end" { (one.name) }
@@ -81,7 +74,21 @@ pub(super) fn days(visit: &Visit, of: &str, days: &[Day]) -> Markup {
     }
 }
 
-fn day(x: usize, Day { said, rate, limits, .. }: &Day, y: &dyn Fn(f64) -> f64) -> Markup {
+/// The share at which a chart of these days begins: where shares are high, the lower part would be empty.
+fn floor(days: &[Day]) -> f64 {
+    let low = |day: &Day| day.rate.interval.map(|[low, _]| low);
+    let limit = |day: &Day| day.limits.map(|Limits { limits: [low, _], .. }| low);
+    let shares = days.iter().filter_map(|day| day.rate.share);
+    // The interval of a day with few units would leave no room for the others, if there are any.
+    let is_many = |day: &&Day| day.rate.of >= FEW;
+    let has_many = days.iter().any(|day| is_many(&day));
+    let lows =
+        days.iter().filter(|day| !has_many || is_many(day)).flat_map(|day| [low(day), limit(day)]).flatten();
+    let floors = |least: f64| [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least);
+    shares.chain(lows).reduce(f64::min).and_then(floors).unwrap_or(0.0)
+}
+
+fn day(x: usize, Day { said, rate, limits, .. }: &Day, floor: f64, y: &dyn Fn(f64) -> f64) -> Markup {
     let Some((share, [low, high])) = rate.share.zip(rate.interval) else { return html! {} };
     let place = |share: f64| format!("{:.1}", y(share));
     let height = |low: f64, high: f64| format!("{:.1}", (y(low) - y(high)).max(1.0));
@@ -94,6 +101,8 @@ fn day(x: usize, Day { said, rate, limits, .. }: &Day, y: &dyn Fn(f64) -> f64) -
                 rect.mean x=(x) y=(place(*mean)) width=(DAY) height="1" {}
             }
             rect.interval x=(x + 5) y=(place(high)) width="2" height=(height(low, high)) {}
+            // It goes on below the chart.
+            @if low < floor { path.cut d=(format!("M{} {:.0} l-4 -6 h8 z", x + 6, y(floor) + 7.0)) {} }
             @if is_beyond {
                 path.beyond d=(format!("M{} {} l5 9 h-10 z", x + 6, place(share))) {}
             } @else {

@@ -4,6 +4,7 @@ use halfrow_station::history::Period;
 use halfrow_station::history::yields::{By, Wanted, Yields, yields};
 use halfrow_station::record::RunCause;
 
+use super::looked_at::all_between;
 use super::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run};
 use super::served::Served;
 use crate::common::{now_ms, reason};
@@ -225,6 +226,38 @@ fn no_day_is_drawn_better_than_it_was() {
     let page = Served::of(made).page("/yield?by=day");
     // 8 pixels from above is 100 %, and 108 is none: 8 + 100 · 2/3.
     assert!(page.contains("<path class=\"beyond\" d=\"M66 74.7 "), "{page}");
+}
+
+/// Six of six passed: the share is at least n/(n + z²) = 61.0 %, so an axis from 95 % on would cut off what is not known.
+#[test]
+fn the_interval_of_the_first_units_is_drawn_whole() {
+    let mut made = Made::new();
+    for number in 0..6 {
+        made.run(&Run { started_ms: BEGIN_MS + number, ..Run::of(&format!("S{number}"), End::Pass) });
+    }
+    let page = Served::of(made).page("/yield?by=day");
+    // 8 pixels from above is 100 %, and 108 is 50 %: 100 · (1 − 0.6097) / 0.5.
+    assert!(
+        page.contains("<rect class=\"interval\" x=\"5\" y=\"8.0\" width=\"2\" height=\"78.1\">"),
+        "{page}"
+    );
+    assert!(!page.contains("class=\"cut\""), "{page}");
+}
+
+/// Of 40 of 40 at least 91.2 % is known, so the axis begins at 90 %; of three of three it is 43.8 %.
+#[test]
+fn an_interval_that_goes_on_below_the_chart_is_marked() {
+    let mut made = Made::new();
+    for (day, units) in [(0, 40), (1, 3)] {
+        for number in 0..units {
+            let started_ms = BEGIN_MS + day * DAY_MS + number;
+            made.run(&Run { started_ms, ..Run::of(&format!("S{day}-{number}"), End::Pass) });
+        }
+    }
+    let page = Served::of(made).page("/yield?by=day");
+    let marks = all_between(&page, "<path class=\"cut\" d=\"", '"');
+    // The second column begins at 12, and 90 % is at 108.
+    assert_eq!(marks, ["M18 115 l-4 -6 h8 z"], "{page}");
 }
 
 /// Of 60 units all passed at one station, and none of 60 at the other: p = 6.3e-28, by Python's `math.erfc`.
