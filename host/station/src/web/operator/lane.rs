@@ -42,13 +42,20 @@ impl LaneEvent {
             said: visit
                 .words
                 .fill("lane.said", &[("lane", &state.lane), ("state", word), ("serial", serial)]),
-            html: lane(visit, state, doing).into_string(),
+            html: lane(visit, state, doing, Scripted::Yes).into_string(),
         }
     }
 }
 
+/// Whether a page has a script, which chooses the lane whose name is pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scripted {
+    Yes,
+    No,
+}
+
 /// The lane.
-pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> Markup {
+pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>, scripted: Scripted) -> Markup {
     let shown = state.shown.as_ref().filter(|_| state.state.is_verdict());
     let word = said(visit, state.state);
     html! {
@@ -56,10 +63,7 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
             data-run=[shown.map(|shown| &shown.run)] data-record=[shown.map(|shown| &shown.record_sha256)] {
             header {
                 h2 id={ "name-" (state.lane) } aria-label=(visit.words.fill("lane.name", &[("lane", &state.lane)])) {
-                    button.name.(length(&state.lane)) id={ "arm-" (state.lane) } type="button" data-arm=(state.lane) aria-pressed="false"
-                        aria-label=(visit.words.fill("lane.arm", &[("lane", &state.lane)])) {
-                        (state.lane)
-                    }
+                    (name(visit, &state.lane, scripted))
                 }
                 div.acts { (acts(visit, state)) }
                 @if let Some(shown) = shown { (saved(visit, shown)) }
@@ -70,6 +74,18 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
             (says(visit, state))
             @if state.state == Word::Running { (progress(visit, &state.lane, doing)) }
         }
+    }
+}
+
+/// The lane's name, by which it is chosen if a script listens.
+fn name(visit: &Visit, lane: &str, scripted: Scripted) -> Markup {
+    html! {
+        @if scripted == Scripted::Yes {
+            button.name.(length(lane)) id={ "arm-" (lane) } type="button" data-arm=(lane) aria-pressed="false"
+                aria-label=(visit.words.fill("lane.arm", &[("lane", lane)])) {
+                (lane)
+            }
+        } @else { span.name.(length(lane)) { (lane) } }
     }
 }
 

@@ -7,7 +7,7 @@ use axum::response::{Html, IntoResponse as _, Response};
 use maud::{Markup, html};
 
 use super::acts::ScanReply;
-use super::lane::lane;
+use super::lane::{Scripted, lane};
 use crate::clock::{self, Moment};
 use crate::floor::CHOSEN;
 use crate::history::Period;
@@ -51,10 +51,11 @@ async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Resp
             h1.heard { (visit.say("nav.lanes")) }
             (scan_box(&visit, &now, answer.as_ref()))
             p #notice .notice role="alert" data-lane=(visit.say("hand.lane")) {}
-            (hint(hints, &visit, &now))
+            (hint(hints, &now, |values| visit.words.fill("demo.try", values)))
+            noscript { (hint(hints, &now, |values| visit.words.fill("demo.still", values))) }
             // What is typed stays when the lanes are loaded anew, because they are in a page of their own.
             noscript { iframe src="/still" title=(visit.say("nav.lanes")) {} }
-            (floor(&visit, &now))
+            (floor(&visit, &now, Scripted::Yes))
             footer #today data-changes[changes] { (or_why(today)) }
             div #said .heard role="log" {}
         }
@@ -74,25 +75,24 @@ pub(super) async fn still(State(app): State<App>, visit: Visit) -> Result<Respon
         section #station {
             h1.heard { (visit.say("nav.lanes")) }
             (untold(&visit))
-            (floor(&visit, &now))
+            (floor(&visit, &now, Scripted::No))
             footer #today { (or_why(today)) " · " (live_lamp(&visit)) }
         }
     };
     Ok(Page { here: Here::Lanes, title: visit.say("nav.lanes"), head, content }.framed(&visit))
 }
 
-/// What a visitor of a demonstration may try.
-fn hint(hints: &[String], visit: &Visit, now: &Now) -> Markup {
+/// What a visitor of a demonstration may try, in these words.
+fn hint(hints: &[String], now: &Now, words: impl FnOnce(&[(&str, &str)]) -> String) -> Markup {
     let Some((serial, lane)) = hints.first().zip(now.lanes.last()) else { return html! {} };
-    let values = [("lane", lane.lane.as_str()), ("serial", serial)];
-    html! { p.hint { (visit.words.fill("demo.try", &values)) } }
+    html! { p.hint { (words(&[("lane", lane.lane.as_str()), ("serial", serial)])) } }
 }
 
 /// Every lane.
-fn floor(visit: &Visit, now: &Now) -> Markup {
+fn floor(visit: &Visit, now: &Now, scripted: Scripted) -> Markup {
     html! {
         div #floor .floor.{ "of-" (shape_of(now.lanes.len())) } {
-            @for state in &now.lanes { (lane(visit, state, now.doing.get(&state.lane))) }
+            @for state in &now.lanes { (lane(visit, state, now.doing.get(&state.lane), scripted)) }
         }
     }
 }

@@ -168,8 +168,10 @@ fn without_a_script_nothing_that_is_typed_is_thrown_away() {
     assert_eq!(page.evaluate(field), json!(["text", "CA967803"]));
     let seen = page.evaluate("[...document.querySelectorAll('#floor, iframe, form.hand')].map(one => [one.tagName, one.checkVisibility()]).join()");
     assert_eq!(seen, json!("FORM,false,FORM,true,IFRAME,true,DIV,false"));
+    // A button that needs a script to do anything is none there.
     page.wait(
-        "document.querySelector('iframe').contentDocument.querySelectorAll('.lane.ready').length === 2",
+        "(lanes => lanes.querySelectorAll('.lane.ready span.name').length === 2 && lanes.querySelector('[data-arm]') === null)
+            (document.querySelector('iframe').contentDocument)",
     );
 }
 
