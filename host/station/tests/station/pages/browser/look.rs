@@ -111,6 +111,9 @@ fn what_was_found_can_be_read_on_a_phone() {
         "Math.min(...[...document.querySelectorAll('.steps tr, .checks tr')].map(row => row.lastElementChild.clientWidth))",
     );
     assert!(narrowest.as_f64().unwrap() > 200.0, "{narrowest} px of 400");
+    let lines = page.evaluate(LINES);
+    assert!(lines.as_array().unwrap().len() > 4, "{lines}");
+    assert!(lines.as_array().unwrap().iter().all(|lines| lines == 1), "{lines}");
     assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
     for (path, table, widths) in [
         (format!("/unit?serial={}", SERIALS[0]), ".bindings", &[390][..]),
@@ -130,6 +133,14 @@ fn what_was_found_can_be_read_on_a_phone() {
         }
     }
 }
+
+/// In how many lines each measurement's name, and each value with its unit, is written.
+const LINES: &str =
+    "[...document.querySelectorAll('.measurements th code, .measurements td.number')].map(one => {
+    const text = document.createRange();
+    text.selectNodeContents(one);
+    return new Set([...text.getClientRects()].map(line => Math.round(line.top))).size;
+})";
 
 /// Parts of a lane, in every state, that overlap each other or extend beyond the lane.
 const OVER: &str = "(() => {
