@@ -54,6 +54,18 @@ fn a_failure_without_a_suspect_says_what_to_do_at_the_bench() {
     }
 }
 
+/// A table that a narrow screen moves sideways can be reached by keyboard, has a name there, and each of its columns has one.
+#[test]
+fn the_report_s_wide_table_is_a_stop_of_the_keyboard_with_a_name() {
+    let folder = Folder::new();
+    let ended = folder.halfrow(small("verify", &["--report", "out", "--board", "mock,fault=stuck-data"]));
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    let page = folder.text("out/report.html");
+    let stop = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Frames\">";
+    assert!(page.contains(stop) && page.matches("class=\"scroll\"").count() == 1, "{page}");
+    assert!(page.contains("<th>result</th>") && !page.contains("<th></th>"), "{page}");
+}
+
 /// Rows far above the optical centre, which read neither end of their input: judging by the output, all of it is right.
 #[test]
 fn a_sample_that_no_output_reads_is_not_the_crc_unit_s_fault_when_it_is_spoilt_on_its_way_in() {

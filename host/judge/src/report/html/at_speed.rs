@@ -29,7 +29,7 @@ fn of_row(frame: u32, row: usize, kept: &KeptRow) -> Markup {
                 (count(*differences, "sample")) " " (verb(*differences, "differ"))
                 @if first.len() < *differences { "; the first " (first.len()) ":" } @else { "." }
             }
-            div.scroll { table.frames {
+            div.scroll tabindex="0" role="region" aria-label="Row kept at speed" { table.frames {
                 thead { tr {
                     th.number { "column" } th.number { "expected" } th.number { "found" }
                     th.number { "found − expected" } th { "bits" }

@@ -26,9 +26,9 @@ pub(super) fn frames(report: &Report) -> Markup {
     html! {
         section {
             h2 { "Frames" }
-            div.scroll { table.frames {
+            div.scroll tabindex="0" role="region" aria-label="Frames" { table.frames {
                 thead { tr {
-                    th {} th.number { "frame" } th { "name" } th { "timing" } th.number { "rows" }
+                    th { "result" } th.number { "frame" } th { "name" } th { "timing" } th.number { "rows" }
                     th.number { "differences" }
                     @if any_differs {
                         th.number { "first at" } th.number { "expected" } th.number { "found" } th.number { "largest" }
