@@ -203,8 +203,18 @@ impl Sending {
     /// Begins to send what is in `store` to all sinks of these settings.
     pub(super) fn begin(settings: &Settings, store: SharedStore) -> Result<Self, Failure> {
         let sinks = store.with(|store| sinks(settings, store))?;
+        Self::to(sinks, store)
+    }
+
+    /// Begins to send what is in `store` to these sinks.
+    pub(super) fn to(sinks: Vec<Box<dyn Sink>>, store: SharedStore) -> Result<Self, Failure> {
         let outbox = Outbox::start(&store, sinks)?;
         Ok(Self { store, outbox })
+    }
+
+    /// Refuses to go on when something is not sent any more.
+    pub(super) fn refuse_ended(&self) -> Result<(), Failure> {
+        self.outbox.refuse_ended().map_err(Failure::error)
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let signal = ready.signal.clone();
     let engine = ready.start()?;
     let news = engine.listen();
-    let _sending = Sending::begin(&settings, engine.store())?;
+    let sending = Sending::begin(&settings, engine.store())?;
     let printer = thread::Builder::new().name("news".to_owned()).spawn(move || print(&news));
     let printer = printer.map_err(Failure::error)?;
     let scans = scans().map_err(Failure::error)?;
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         match scans.recv_timeout(LOOK) {
             Ok((number, line)) => engine.scan(number, &line, &arguments.operator),
             Err(RecvTimeoutError::Timeout) if engine.has_ended() => return Err(Failure::error(EngineEnded)),
-            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Timeout) => sending.refuse_ended()?,
             Err(RecvTimeoutError::Disconnected) => break None,
         }
     };

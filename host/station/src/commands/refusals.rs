@@ -18,6 +18,7 @@ use super::user::NoUsers;
 use super::work::NoWork;
 use crate::check::{Fault, Superseded};
 use crate::engine::EngineEnded;
+use crate::outbox::SendingEnded;
 use crate::web::PagesEnded;
 
 codes::codes! {
@@ -56,6 +57,8 @@ codes::codes! {
     EngineEnded => "engine-ended"
     ;
     PagesEnded => "pages-ended"
+    ;
+    SendingEnded => "sending-ended"
     ;
     NoMock => "plan-without-mock"
     ;

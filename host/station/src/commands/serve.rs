@@ -76,26 +76,33 @@ fn until_signal(
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
     let at = listener.local_addr().map_err(Failure::error)?;
     let engine = Arc::new(ready.start()?);
-    let _sending = Sending::begin(settings, engine.store())?;
+    let sending = Sending::begin(settings, engine.store())?;
     let app = App::new(settings.clone(), Arc::clone(&engine), access.at(at.port()), hints);
     let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
     begin(&engine).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
     notify.ready();
-    let ended = at_work(&signal, &engine, &server, notify);
+    let ended = at_work(&signal, &engine, (&server, &sending), notify);
     engine.close(Some(*ended.as_ref().unwrap_or(&StoppedBy::Caller)));
     server.close();
     Ok(halfrow::Cause::Stopped(ended?).into())
 }
 
-/// Waits until a signal comes, and tells systemd meanwhile that the engine works.
-fn at_work(signal: &Signal, engine: &Engine, server: &Server, notify: &Notify) -> Result<StoppedBy, Failure> {
+/// Waits until a signal comes, and tells systemd meanwhile that the engine works. A part that has ended unasked ends the wait: only
+/// another start brings it back.
+fn at_work(
+    signal: &Signal,
+    engine: &Engine,
+    (server, sending): (&Server, &Sending),
+    notify: &Notify,
+) -> Result<StoppedBy, Failure> {
     let mut told = Instant::now();
     signal.wait(|| {
         if engine.has_ended() {
             return Err(Failure::error(EngineEnded));
         }
         server.refuse_ended().map_err(Failure::error)?;
+        sending.refuse_ended()?;
         if told.elapsed() >= TELL {
             told = Instant::now();
             tell(engine, notify);
@@ -118,8 +125,9 @@ mod tests {
     use std::thread;
 
     use super::*;
-    use crate::engine::tests::stopped;
-    use crate::store::{Folder, Store};
+    use crate::engine::tests::{station, stopped};
+    use crate::outbox::{Faulty, SendingEnded};
+    use crate::store::{Deed, Folder, Store};
 
     #[test]
     fn systemd_is_not_told_that_an_engine_works_that_does_not() {
@@ -133,6 +141,30 @@ mod tests {
             let mut heard = [0; 64];
             assert_eq!(systemd.recv(&mut heard).ok(), is_told.then_some("WATCHDOG=1".len()));
         }
+    }
+
+    /// systemd starts it again, and what was kept is sent.
+    #[test]
+    fn a_station_that_sends_nothing_any_more_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let (settings, engine) = station(folder.path());
+        let everybody = User { name: "weber".to_owned(), who: Who::Operator };
+        let access = Access::of(&settings, everybody).unwrap();
+        let app = App::new(settings, Arc::clone(&engine), access, Vec::new()).unwrap();
+        let server = Server::start(&app, Server::listen("127.0.0.1:0".parse().unwrap()).unwrap()).unwrap();
+        let sending = Sending::to(vec![Box::new(Faulty)], engine.store()).unwrap();
+        let deed = Deed { operator: "weber", act: "scan", subject: "1", detail: "" };
+        engine.store().with(|store| store.note(deed)).unwrap();
+        let (told, ended) = mpsc::channel();
+        let worked = Arc::clone(&engine);
+        thread::spawn(move || {
+            let parts = (&server, &sending);
+            told.send(at_work(&Signal::default(), &worked, parts, &Notify::default()).unwrap_err()).unwrap();
+            server.close();
+        });
+        let failure = ended.recv_timeout(Duration::from_secs(60)).unwrap();
+        assert!(failure.exit == Exit::Error && failure.error.is::<SendingEnded>(), "{failure:?}");
+        engine.close(None);
     }
 
     /// Without systemd's watchdog, the program's end is all that can be noticed from outside.

@@ -70,10 +70,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     // The plant lends a board again as soon as it has its run, so nothing is sent before the board is out.
     if stop().is_none() {
         out?;
-        let _sending = Sending::begin(&settings, store)?;
+        let sending = Sending::begin(&settings, store)?;
         let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
+        // No job is over before the plant has its run, which nobody would send.
+        let stop = || ended_or(&stop, sending.refuse_ended().is_err());
         work.introduce(&introduction, !arguments.once, &stop)?;
         take_jobs(&work, arguments, at_once, &stop)?;
+        sending.refuse_ended()?;
     }
     Ok(signal.by().map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }

@@ -13,10 +13,9 @@ mod quiet;
 mod sent;
 mod sinks;
 mod standing;
+mod threads;
 
-use std::io;
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
-use std::thread::{self, JoinHandle};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 pub use crate::clock::HeardClock;
@@ -25,9 +24,12 @@ pub(crate) use sent::{Sent, awaited, needs_person};
 pub(crate) use sinks::SinkError;
 pub use sinks::{SinkSettingsError, open};
 pub use standing::Standing;
+pub(crate) use threads::SendingEnded;
+#[cfg(test)]
+pub(crate) use threads::tests::Faulty;
+pub use threads::{Outbox, OutboxError};
 
 use crate::clock;
-use crate::guard::guarded;
 use crate::said::Said;
 use crate::store::{
     Backlog, Entry, Folder, LONGEST_WAIT_MS, Parcel, SharedStore, Snapshot, StoreError, Tried,
@@ -43,8 +45,6 @@ const KEPT: Duration = Duration::from_millis(200);
 const BEAT: Duration = Duration::from_secs(30);
 /// How long a sink that has nothing to do stays connected.
 const IDLE: Duration = Duration::from_secs(10);
-/// How long to wait at the end for what is under way.
-const LAST: Duration = Duration::from_secs(5);
 
 /// Something to which the station sends what it keeps.
 pub trait Sink: Send {
@@ -178,62 +178,6 @@ fn became(entry: &Entry, taken: Result<(), Undelivered>) -> Tried {
         Undelivered::Early(said) => Tried::Early { next_ms, said },
         Undelivered::Refused(said) => Tried::Dead { said },
     }
-}
-
-/// The threads that send.
-#[derive(Debug, Default)]
-pub struct Outbox {
-    /// Dropping them ends the threads.
-    stops: Vec<Sender<()>>,
-    threads: Vec<JoinHandle<()>>,
-}
-
-impl Outbox {
-    /// Sends to these sinks, including what was kept before.
-    ///
-    /// # Errors
-    /// [`OutboxError`]
-    pub fn start(store: &SharedStore, sinks: Vec<Box<dyn Sink>>) -> Result<Self, OutboxError> {
-        if !sinks.is_empty() {
-            let names = sinks.iter().map(|sink| sink.name().to_owned()).collect();
-            store.with(|store| store.sends_to(names))?;
-        }
-        let mut outbox = Self::default();
-        for sink in sinks {
-            let (stop, stopped) = mpsc::channel();
-            let (store, name) = (store.clone(), format!("outbox to {}", sink.name()));
-            let work = move || {
-                if let Err(fault) = guarded(|| send(&store, sink, &stopped)) {
-                    tracing::error!("nothing is sent on any more: {fault}; start the station again");
-                }
-            };
-            outbox.stops.push(stop);
-            outbox.threads.push(thread::Builder::new().name(name).spawn(work)?);
-        }
-        Ok(outbox)
-    }
-
-    /// Ends the threads. What takes too long is abandoned, and sent again at the next start.
-    pub fn close(mut self) {
-        self.stops.clear();
-        let until = Instant::now() + LAST;
-        for thread in self.threads {
-            while !thread.is_finished() && Instant::now() < until {
-                thread::sleep(Duration::from_millis(10));
-            }
-        }
-    }
-}
-
-/// An outbox that cannot start.
-#[derive(Debug, thiserror::Error)]
-pub enum OutboxError {
-    /// The system gives the program no thread for sending results.
-    #[error("the system has no thread for what is to be sent; end other programs")]
-    Thread(#[from] io::Error),
-    /// The store does not take what is to be sent.
-    #[error(transparent)]
-    Store(#[from] StoreError),
 }
 
 fn left(store: &SharedStore, sink: &dyn Sink) -> Result<Backlog, StoreError> {

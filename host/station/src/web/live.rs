@@ -3,11 +3,12 @@
 //! A page that hears no beat does not show verdicts as live. The beat also stops when the engine's thread does.
 
 use std::collections::{BTreeMap, HashMap};
+use std::io;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Weak};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
-use std::{io, thread};
 
 use parking_lot::Mutex;
 use tokio::sync::{broadcast, oneshot};
@@ -15,6 +16,7 @@ use tokio::sync::{broadcast, oneshot};
 use crate::clock;
 use crate::engine::{Engine, LaneState, News, in_time};
 use crate::floor::{ScanError, Word};
+use crate::guard::guarded;
 use crate::said::Said;
 
 /// How often there is a beat.
@@ -95,15 +97,19 @@ pub(super) struct Live {
 }
 
 impl Live {
-    /// Follows the engine's news from now on.
+    /// Follows the engine's news from now on, in the thread that is returned.
     ///
     /// # Errors
     /// When the system has no thread for it.
-    pub(super) fn start(engine: &Arc<Engine>) -> io::Result<Arc<Self>> {
+    pub(super) fn start(engine: &Arc<Engine>) -> io::Result<(Arc<Self>, JoinHandle<()>)> {
         let live = Arc::new(Self::of(engine.lanes()));
         let (heard, engine, told) = (engine.listen(), Arc::clone(engine), Arc::downgrade(&live));
-        thread::Builder::new().name("live".to_owned()).spawn(move || listen(&engine, heard, &told))?;
-        Ok(live)
+        let work = move || {
+            if let Err(fault) = guarded(|| listen(&engine, heard, &told)) {
+                tracing::error!("the pages hear no news any more: {fault}");
+            }
+        };
+        Ok((live, thread::Builder::new().name("live".to_owned()).spawn(work)?))
     }
 
     fn of(lanes: Vec<LaneState>) -> Self {

@@ -70,6 +70,7 @@ pub(crate) struct PagesEnded;
 /// The pages, which are served until they are closed.
 #[derive(Debug)]
 pub struct Server {
+    app: App,
     stop: oneshot::Sender<()>,
     thread: JoinHandle<()>,
 }
@@ -99,15 +100,15 @@ impl Server {
         let serve = move || serve(runtime, listener, (router, slots), stopped);
         let thread =
             thread::Builder::new().name("pages".to_owned()).spawn(serve).map_err(ServeError::Room)?;
-        Ok(Self { stop, thread })
+        Ok(Self { app: app.clone(), stop, thread })
     }
 
     /// Refuses to go on without pages.
     ///
     /// # Errors
-    /// [`PagesEnded`] when their thread has ended.
+    /// [`PagesEnded`] when their thread has ended, or the one that brings them news.
     pub(crate) fn refuse_ended(&self) -> Result<(), PagesEnded> {
-        if self.thread.is_finished() { Err(PagesEnded) } else { Ok(()) }
+        if self.thread.is_finished() || self.app.is_deaf() { Err(PagesEnded) } else { Ok(()) }
     }
 
     /// Ends all connections.
@@ -233,6 +234,23 @@ mod tests {
         assert!(well.refuse_ended().is_ok(), "the control");
         well.close();
         engine.close(None);
+    }
+
+    /// Every page would say NOT LIVE until somebody starts the station again.
+    #[test]
+    fn pages_that_hear_no_news_are_not_served_any_longer() {
+        let folder = tempfile::tempdir().unwrap();
+        let (app, engine) = station(folder.path());
+        let server = Server::start(&app, Server::listen("127.0.0.1:0".parse().unwrap()).unwrap()).unwrap();
+        assert!(server.refuse_ended().is_ok(), "the control");
+        // Its listener ends with it, as by a fault.
+        engine.close(None);
+        let begun = Instant::now();
+        while server.refuse_ended().is_ok() {
+            assert!(begun.elapsed() < Duration::from_secs(60), "nobody notices");
+            thread::sleep(FULL);
+        }
+        server.close();
     }
 
     /// 192.0.2.0/24 is for documentation alone, so no computer has it (RFC 5737).

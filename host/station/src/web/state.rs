@@ -2,6 +2,7 @@
 
 use std::io;
 use std::sync::Arc;
+use std::thread::JoinHandle;
 
 use halfrow::words::plain;
 use tokio::task;
@@ -54,6 +55,8 @@ enum Source {
 pub(super) struct Lanes {
     pub(super) engine: Arc<Engine>,
     pub(super) live: Arc<Live>,
+    /// What brings `live` the engine's news.
+    listens: JoinHandle<()>,
     /// Serial numbers that a visitor of a demonstration may type.
     pub(super) hints: Vec<String>,
 }
@@ -70,10 +73,10 @@ impl App {
         access: Access,
         hints: Vec<String>,
     ) -> io::Result<Self> {
-        let live = Live::start(&engine)?;
+        let (live, listens) = Live::start(&engine)?;
         let (plans, mark) = (named(&settings), mark(&settings));
         let (source, turns) =
-            (Source::Station(Lanes { engine, live, hints }), Turns::new(Tally::new(true, 0)));
+            (Source::Station(Lanes { engine, live, listens, hints }), Turns::new(Tally::new(true, 0)));
         Ok(Self(Arc::new(Parts { settings, access, plans, mark, turns, source })))
     }
 
@@ -104,6 +107,11 @@ impl App {
     /// Whether its lanes were told to end, and take nothing more.
     pub(super) fn is_ending(&self) -> bool {
         matches!(&self.0.source, Source::Station(lanes) if lanes.engine.is_ending())
+    }
+
+    /// Whether it hears no news of its lanes any more, so that no page is live.
+    pub(super) fn is_deaf(&self) -> bool {
+        matches!(&self.0.source, Source::Station(lanes) if lanes.listens.is_finished())
     }
 
     /// Its name.
