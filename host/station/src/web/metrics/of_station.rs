@@ -12,7 +12,7 @@ use crate::floor::Word;
 use crate::history::PlanName;
 use crate::history::counts::{Cell, Count};
 use crate::settings::Settings;
-use crate::store::Unsent;
+use crate::store::{SINK_OF_PLANT, Unsent};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -50,7 +50,15 @@ const COMMIT: Metric = histogram(
     "Time from the end of a run until its result was saved and read back, since the start.",
 );
 const ENTRIES: Metric = gauge("halfrow_outbox_entries", "Entries that the sink does not have yet.");
-const DEAD: Metric = gauge("halfrow_outbox_dead_letters", "Entries among these that wait for a person.");
+const RESULTS: Metric = gauge("halfrow_outbox_results", "Runs and waivers that the sink does not have yet.");
+const LIMIT: Metric = gauge(
+    "halfrow_outbox_results_limit",
+    "With more results than this that the plant does not have yet, lanes accept no board.",
+);
+const DEAD: Metric = gauge(
+    "halfrow_outbox_dead_letters",
+    "Entries that wait for a person, among those that the sink does not have yet.",
+);
 const OLDEST: Metric = gauge(
     "halfrow_outbox_oldest_seconds",
     "Age of the oldest entry that the sink does not have yet; 0 if there is none.",
@@ -130,26 +138,41 @@ fn labels(Cell { plan, lane, .. }: &Cell) -> [Label<'_>; 3] {
 /// What is unsent at every sink, also at those that have everything.
 fn outbox(text: &mut Text, settings: &Settings, unsent: Option<&[Unsent]>) {
     let now_ms = clock::now_ms();
-    let mut sinks: BTreeMap<&str, (u32, u32, f64)> = BTreeMap::new();
+    let mut sinks: BTreeMap<&str, Waiting> = BTreeMap::new();
     if let Some(unsent) = unsent {
-        sinks.extend(settings.sink_names().map(|sink| (sink, (0, 0, 0.0))));
-        for Unsent { sink, entries, dead, since_ms, .. } in unsent {
+        sinks.extend(settings.sink_names().map(|sink| (sink, Waiting::default())));
+        for Unsent { sink, entries, results, dead, since_ms, .. } in unsent {
             let age = now_ms.saturating_sub(*since_ms).max(0) as f64 / 1000.0;
-            sinks.insert(sink, (*entries, *dead, age));
+            sinks.insert(sink, Waiting { entries: *entries, results: *results, dead: *dead, age });
         }
     }
-    let mut of = text.of(&ENTRIES);
-    for (sink, (entries, ..)) in &sinks {
-        of.put(&[("sink", sink)], *entries);
-    }
-    let mut of = text.of(&DEAD);
-    for (sink, (_, dead, _)) in &sinks {
-        of.put(&[("sink", sink)], *dead);
+    let mut put = |metric, count: fn(&Waiting) -> u32| {
+        let mut of = text.of(metric);
+        for (sink, waiting) in &sinks {
+            of.put(&[("sink", sink)], count(waiting));
+        }
+    };
+    put(&ENTRIES, |of| of.entries);
+    put(&RESULTS, |of| of.results);
+    put(&DEAD, |of| of.dead);
+    let mut of = text.of(&LIMIT);
+    if let Some(plant) = &settings.plant {
+        of.put(&[("sink", SINK_OF_PLANT)], plant.most_unsent);
     }
     let mut of = text.of(&OLDEST);
-    for (sink, (.., age)) in &sinks {
+    for (sink, Waiting { age, .. }) in &sinks {
         of.put(&[("sink", sink)], *age);
     }
+}
+
+/// What a sink does not have yet.
+#[derive(Default)]
+struct Waiting {
+    entries: u32,
+    results: u32,
+    dead: u32,
+    /// How old the oldest entry is, in seconds.
+    age: f64,
 }
 
 #[cfg(test)]

@@ -195,7 +195,7 @@ fn a_plant_that_is_away_is_behind_and_says_for_how_long() {
     let station = Station::with(1, &format!("[web]\nlisten = \"127.0.0.1:0\"\n{plant}"));
     let serving = station.serve();
     let none = Figures::of(&serving);
-    for name in ["entries", "dead_letters", "oldest_seconds"] {
+    for name in ["entries", "results", "dead_letters", "oldest_seconds"] {
         assert_eq!(none.at(&format!("halfrow_outbox_{name}{{sink=\"plant\"}}")), 0.0, "{name}");
     }
     assert_eq!(none.shapes(), told("A station"), "docs/metrics.md lists what is served");
@@ -205,6 +205,10 @@ fn a_plant_that_is_away_is_behind_and_says_for_how_long() {
     let entries = station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL").remove(0);
     let behind = once(&serving, "halfrow_outbox_entries{sink=\"plant\"}", entries.parse().unwrap());
     let age = behind.at("halfrow_outbox_oldest_seconds{sink=\"plant\"}");
+    let results = behind.at("halfrow_outbox_results{sink=\"plant\"}");
+    assert_eq!(results, 1.0, "the run, and not the line of the audit");
+    // docs/plant.md: what the settings say if they say nothing.
+    assert_eq!(behind.at("halfrow_outbox_results_limit{sink=\"plant\"}"), 10_000.0);
     assert!(entries != "0" && (0.0..60.0).contains(&age) && age > 0.0, "{entries} entries, {age} s");
     assert_sound(&behind);
 }
