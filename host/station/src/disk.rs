@@ -1,10 +1,11 @@
-//! Whether a disk keeps what is written to it. Memory and other computers may not.
+//! Whether a disk keeps what is written to it, which memory and other computers may not, and how much room it has.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use nix::sys::statfs::statfs;
+use nix::sys::statvfs::statvfs;
 
 /// File systems that may lose what was synced to them, by their magic numbers in statfs(2).
 const REFUSED: [(i64, &str); 12] = [
@@ -92,6 +93,37 @@ fn is_volatile(mounts: &str, place: &Path) -> bool {
 fn unescaped(word: &str) -> String {
     let escapes = [("\\040", " "), ("\\011", "\t"), ("\\012", "\n"), ("\\134", "\\")];
     escapes.iter().fold(word.to_owned(), |word, (escape, letter)| word.replace(escape, letter))
+}
+
+/// The room on a disk, as `df` counts it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Room {
+    /// The bytes that files have.
+    used: u64,
+    /// The bytes that are left to others than the superuser.
+    pub(crate) free: u64,
+}
+
+impl Room {
+    /// That of the disk with this folder, if the system says so.
+    pub(crate) fn of(folder: &Path) -> Option<Self> {
+        let disk = statvfs(folder).ok()?;
+        // What is reserved for the superuser counts as neither used nor free.
+        let used = disk.blocks().saturating_sub(disk.blocks_free());
+        let bytes = |blocks: u64| blocks.saturating_mul(disk.fragment_size());
+        Some(Self { used: bytes(used), free: bytes(disk.blocks_available()) })
+    }
+
+    /// All bytes that files can have.
+    pub(crate) const fn size(&self) -> u64 {
+        self.used.saturating_add(self.free)
+    }
+
+    /// How much of it is used, in per cent, rounded up; none for a disk without room for anything.
+    pub(crate) fn filled(&self) -> Option<u64> {
+        let percent = (100 * u128::from(self.used)).div_ceil(u128::from(self.size()).max(1));
+        (self.size() > 0).then(|| u64::try_from(percent).unwrap_or(u64::MAX))
+    }
 }
 
 #[cfg(test)]

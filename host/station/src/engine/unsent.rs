@@ -1,7 +1,6 @@
 //! Whether too much is kept only here for another board to be judged.
 
-use nix::sys::statvfs::statvfs;
-
+use crate::disk::Room;
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
 use crate::store::{Folder, SINK_OF_PLANT, Snapshot};
@@ -18,15 +17,6 @@ pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     if results > most {
         return Some(Saying::TooMuchUnsent { entries: results, most }.into());
     }
-    let percent = filled(folder).filter(|_| results > 0)?;
+    let percent = Room::of(folder.path())?.filled().filter(|_| results > 0)?;
     (percent >= plant.most_filled.into()).then(|| Saying::DiskTooFull { percent }.into())
-}
-
-/// How full the folder's disk is, in per cent, as `df` counts it, if the system says so.
-fn filled(folder: &Folder) -> Option<u64> {
-    let disk = statvfs(folder.path()).ok()?;
-    // What is reserved for the superuser counts as neither used nor free.
-    let used = disk.blocks().saturating_sub(disk.blocks_free());
-    let all = used + disk.blocks_available();
-    (all > 0).then(|| (100 * used).div_ceil(all))
 }

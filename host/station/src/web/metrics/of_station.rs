@@ -7,6 +7,7 @@ use strum::VariantArray as _;
 use super::text::{Label, Metric, Text, counter, gauge, histogram, info};
 use super::{counted, turns};
 use crate::clock;
+use crate::disk::Room;
 use crate::engine::{Figures, LaneState};
 use crate::floor::Word;
 use crate::history::PlanName;
@@ -64,23 +65,34 @@ const OLDEST: Metric = gauge(
     "Age of the oldest entry that the sink does not have yet; 0 if there is none.",
 );
 
-/// What the store holds.
-type StoreFigures = (BTreeMap<Cell, Count>, Vec<Unsent>);
+const FREE: Metric =
+    gauge("halfrow_store_free_bytes", "Room that is left on the disk with the station's folder.");
+const SIZE: Metric =
+    gauge("halfrow_store_size_bytes", "Room on the disk with the station's folder, used or left.");
+
+/// What the store holds, and how much more it can.
+type StoreFigures = (BTreeMap<Cell, Count>, Vec<Unsent>, Option<Room>);
 
 /// Writes all figures. If the store cannot be read they say so, and still have what lanes do.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
     let engine = &app.lanes(visit)?.engine;
-    let kept: Option<StoreFigures> =
-        turns::counted(app, visit, |now, tally| Ok((tally.counts(now)?, now.unsent()?))).await;
+    let data = app.settings().data.clone();
+    let kept: Option<StoreFigures> = turns::counted(app, visit, move |now, tally| {
+        Ok((tally.counts(now)?, now.unsent()?, Room::of(&data)))
+    })
+    .await;
     text.of(&STATION).put(&[("station", app.station())], 1);
     text.of(&WELL).put(&[], u64::from(engine.is_well()));
     text.of(&READABLE).put(&[], u64::from(kept.is_some()));
     lanes(text, &engine.lanes());
     since_the_start(text, &engine.figures());
-    let (counts, unsent) = kept.unzip();
-    let counts = counts.map(|counts| with_all(app.settings(), counts)).unwrap_or_default();
+    let (counts, unsent, room) = match kept {
+        Some((counts, unsent, room)) => (with_all(app.settings(), counts), Some(unsent), room),
+        None => Default::default(),
+    };
     counted(text, [&RUNS, &UNITS, &FIRST], &counts, labels);
     outbox(text, app.settings(), unsent.as_deref());
+    disk(text, room);
     Ok(())
 }
 
@@ -173,6 +185,15 @@ struct Waiting {
     dead: u32,
     /// How old the oldest entry is, in seconds.
     age: f64,
+}
+
+fn disk(text: &mut Text, room: Option<Room>) {
+    for (metric, bytes) in [(&FREE, room.map(|room| room.free)), (&SIZE, room.map(|room| room.size()))] {
+        let mut of = text.of(metric);
+        if let Some(bytes) = bytes {
+            of.put(&[], bytes);
+        }
+    }
 }
 
 #[cfg(test)]

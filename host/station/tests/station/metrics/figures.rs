@@ -173,6 +173,21 @@ fn a_verdict_that_waits_for_the_plant_is_told_from_a_result_that_is_not_saved() 
     assert_eq!(in_state(&serving, "1", "pass").at(of_lane), 0.0);
 }
 
+#[test]
+fn the_room_on_the_disk_is_told_as_df_counts_it() {
+    let station = Station::private(1);
+    let figures = Figures::of(&station.serve());
+    let mut df = Command::new("df");
+    df.args(["--block-size=1", "--output=used,avail"]).arg(station.path("data"));
+    let said = String::from_utf8(df.output().unwrap().stdout).unwrap();
+    let bytes = said.lines().nth(1).unwrap().split_whitespace().map(|bytes| bytes.parse().unwrap());
+    let [used, free]: [f64; 2] = bytes.collect::<Vec<_>>().try_into().unwrap();
+    assert_eq!(figures.at("halfrow_store_size_bytes"), used + free);
+    // Other programs write to the disk meanwhile.
+    let told = figures.at("halfrow_store_free_bytes");
+    assert!((told - free).abs() < (used + free) / 10.0, "{told} bytes, not {free}");
+}
+
 /// What the lanes do is reported even when nothing can be counted.
 #[test]
 fn a_store_that_cannot_be_read_is_said_to_be() {
