@@ -56,7 +56,7 @@ pub use plant::{
     Claim, Introduction, Job, JobState, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError,
     PlantLink, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
 };
-pub(crate) use plant::{KeptRun, LEASE_MS, PlantPool, publications, waiters};
+pub(crate) use plant::{JobsInState, KeptRun, LEASE_MS, PlantPool, open_jobs, publications, waiters};
 pub(crate) use reason::MOST_REASON;
 pub use reason::{Reason, ReasonError};
 pub use retention::Removed;

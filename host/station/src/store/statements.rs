@@ -209,6 +209,7 @@ statements! {
     pub(super) CANCEL_JOB = "plant/cancel-job.sql";
     pub(super) RETRY_JOB = "plant/retry-job.sql";
     pub(super) JOBS = "plant/jobs.sql";
+    pub(super) OPEN_JOBS = "plant/open-jobs.sql";
     pub(super) ADD_BUNDLE = "plant/add-bundle.sql";
     pub(super) BUNDLE = "plant/bundle.sql";
     pub(super) PUBLISH = "plant/publish.sql";

@@ -316,6 +316,25 @@ pub fn jobs(of: &Snapshot, states: &[JobState], after: &str, most: u32) -> Resul
     of.rows("to tell its jobs", sql::JOBS, values![&states.join(" "), after, most], job)
 }
 
+/// The jobs of one state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct JobsInState {
+    pub(crate) state: JobState,
+    pub(crate) jobs: u32,
+    /// How long ago the oldest of them was added, in milliseconds, by the plant's clock.
+    pub(crate) oldest_ms: i64,
+}
+
+/// The jobs that are not done, by their states; a state without jobs is left out.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read.
+pub(crate) fn open_jobs(of: &Snapshot) -> Result<Vec<JobsInState>, StoreError> {
+    of.rows("to count its jobs", sql::OPEN_JOBS, &[], |row| {
+        Ok(JobsInState { state: row.get(0)?, jobs: row.get(1)?, oldest_ms: row.get(2)? })
+    })
+}
+
 fn job(row: &Row<'_>) -> Result<Job, DatabaseError> {
     Ok(Job {
         id: row.get(0)?,

@@ -7,6 +7,7 @@ use super::{counted, turns};
 use crate::history::counts::{Cell, Count};
 use crate::history::mismatch::mismatches;
 use crate::history::stations::{Station, stations};
+use crate::store::{JobState, JobsInState, SharedBoard, boards, open_jobs};
 use crate::web::state::App;
 use crate::web::visit::Visit;
 
@@ -37,6 +38,13 @@ const MISMATCHES: Metric = gauge(
     "Devices and units that are bound to each other at a station but not at the plant.",
 );
 
+const JOBS: Metric = gauge("halfrow_plant_jobs", "Jobs that are not done.");
+const OLDEST: Metric = gauge(
+    "halfrow_plant_jobs_oldest_waiting_seconds",
+    "Age of the oldest job that no station has; 0 if there is none.",
+);
+const BOARDS: Metric = gauge("halfrow_plant_boards", "Boards that several stations share.");
+
 /// What the plant holds.
 #[derive(Default)]
 struct PlantFigures {
@@ -44,6 +52,7 @@ struct PlantFigures {
     counts: BTreeMap<Cell, Count>,
     stations: Vec<Station>,
     mismatches: Option<usize>,
+    shared: Option<(Vec<JobsInState>, Vec<SharedBoard>)>,
 }
 
 /// Writes all figures. They say so if the plant is away.
@@ -51,12 +60,14 @@ pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) {
     let held = turns::counted(app, visit, |now, tally| {
         let version = Some(now.version()?.unsigned_abs());
         let mismatches = Some(mismatches(now)?.len());
-        Ok(PlantFigures { version, counts: tally.counts(now)?, stations: stations(now)?, mismatches })
+        let (counts, stations) = (tally.counts(now)?, stations(now)?);
+        let shared = Some((open_jobs(now)?, boards(now)?));
+        Ok(PlantFigures { version, counts, stations, mismatches, shared })
     });
     let held = held.await;
     text.of(&PLANT).put(&[("plant", app.station())], 1);
     text.of(&UP).put(&[], u64::from(held.is_some()));
-    let PlantFigures { version, counts, stations, mismatches } = held.unwrap_or_default();
+    let PlantFigures { version, counts, stations, mismatches, shared } = held.unwrap_or_default();
     let mut of = text.of(&VERSION);
     if let Some(version) = version {
         of.put(&[], version);
@@ -67,6 +78,7 @@ pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) {
     if let Some(mismatches) = mismatches {
         of.put(&[], mismatches);
     }
+    lent(text, shared.as_ref());
 }
 
 fn labels(Cell { plan, station, .. }: &Cell) -> [Label<'_>; 3] {
@@ -85,5 +97,36 @@ fn heard(text: &mut Text, stations: &[Station]) {
     let mut of = text.of(&DEAD);
     for station in stations {
         of.put(&[("station", &station.name)], station.dead);
+    }
+}
+
+/// Jobs and boards by state, also for states without any: an alert must see that there are none.
+fn lent(text: &mut Text, shared: Option<&(Vec<JobsInState>, Vec<SharedBoard>)>) {
+    let of_state = |state| move |jobs: &&JobsInState| jobs.state == state;
+    let mut of = text.of(&JOBS);
+    if let Some((jobs, _)) = shared {
+        for state in [JobState::Waiting, JobState::Claimed, JobState::Dead] {
+            let jobs = jobs.iter().find(of_state(state)).map_or(0, |found| found.jobs);
+            of.put(&[("state", &state.to_string())], jobs);
+        }
+    }
+    let mut of = text.of(&OLDEST);
+    if let Some((jobs, _)) = shared {
+        let oldest_ms = jobs.iter().find(of_state(JobState::Waiting)).map_or(0, |found| found.oldest_ms);
+        of.put(&[], oldest_ms.max(0) as f64 / 1000.0);
+    }
+    let mut of = text.of(&BOARDS);
+    if let Some((_, boards)) = shared {
+        for state in ["free", "held", "out"] {
+            of.put(&[("state", state)], boards.iter().filter(|board| state_of(board) == state).count());
+        }
+    }
+}
+
+fn state_of(board: &SharedBoard) -> &'static str {
+    match (&board.out, &board.holder) {
+        (Some(_), _) => "out",
+        (None, Some(_)) => "held",
+        (None, None) => "free",
     }
 }

@@ -8,8 +8,9 @@ use std::process::{Command, Stdio};
 
 use super::figures::once;
 use super::text::{Figures, assert_sound, told};
-use crate::common::{Did, folder, program};
+use crate::common::{Did, HANG, folder, program};
 use crate::history::released::history;
+use crate::jobs::{add, run_out, shared, worker};
 use crate::pages::http::Request;
 use crate::pages::station::{PUBLIC, Serving};
 use crate::plant::pages::{command, served, settings};
@@ -56,6 +57,42 @@ fn a_plant_tells_of_all_stations_and_says_when_it_is_away() {
     assert_sound(&away);
     server.again();
     assert_eq!(Figures::of(&serving).samples, figures.samples);
+}
+
+/// The value of every figure of jobs and boards, but the age: waiting, claimed, dead; free, held, out.
+fn of_jobs(figures: &Figures) -> [f64; 6] {
+    let jobs = ["waiting", "claimed", "dead"].map(|state| format!("halfrow_plant_jobs{{state=\"{state}\"}}"));
+    let boards = ["free", "held", "out"].map(|state| format!("halfrow_plant_boards{{state=\"{state}\"}}"));
+    [&jobs[0], &jobs[1], &jobs[2], &boards[0], &boards[1], &boards[2]].map(|name| figures.at(name))
+}
+
+#[test]
+fn a_plant_tells_which_jobs_wait_for_a_station_or_a_person_and_which_boards_are_there() {
+    let (server, mut plant) = shared(3);
+    let (_folder, serving) = served(&server);
+    let oldest = "halfrow_plant_jobs_oldest_waiting_seconds";
+    let none = Figures::of(&serving);
+    assert_eq!((of_jobs(&none), none.at(oldest)), ([0.0, 0.0, 0.0, 3.0, 0.0, 0.0], 0.0));
+    let jobs = add(&mut plant, 4);
+    let claim = plant.claim(&worker("7")).unwrap().unwrap();
+    assert_eq!(claim.job, jobs[0]);
+    server.change(&format!(
+        "UPDATE job SET state = 'dead', said = 'no' WHERE id = '{}'; UPDATE job SET state = 'done' WHERE id = '{}';
+         UPDATE job SET created_ms = created_ms - 7200000 WHERE id <> '{}';
+         UPDATE board SET out = 'burnt' WHERE name = (SELECT max(name) FROM board WHERE holder IS NULL)",
+        jobs[1], jobs[2], jobs[0]
+    ));
+    let figures = Figures::of(&serving);
+    assert_sound(&figures);
+    assert_eq!(of_jobs(&figures), [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
+    assert!(
+        figures.at(oldest) >= 7200.0 && figures.at(oldest) < 7200.0 + HANG.as_secs_f64(),
+        "{}",
+        figures.text
+    );
+    // Whoever had the job and the board is gone.
+    run_out(&server);
+    assert_eq!(of_jobs(&Figures::of(&serving)), [2.0, 0.0, 1.0, 2.0, 0.0, 1.0]);
 }
 
 /// The page's connection, which is kept, is older than the tables.
