@@ -100,6 +100,9 @@ pub(super) struct Prune {
     pub(super) json: bool,
 }
 
+/// Most often nothing is without a row, and whoever makes room on a full disk has to ask for more.
+const HOW_TO_REMOVE_MORE: &str = "; with --older-than DAYS the evidence of earlier runs is removed, too";
+
 pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
     let Prune { data, older_than, operator, json } = arguments;
     let folder = data.folder();
@@ -123,8 +126,10 @@ pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
     let evidence = format!("{} of evidence {} removed", count(pieces, "piece"), verb(pieces, "were"));
     let by_age = older_than.map(|_| format!("{evidence}, {}; ", count(bytes, "byte")));
     let Unnamed { pieces, spools, bytes } = unnamed;
+    let is_vain = older_than.is_none() && pieces + spools == 0;
+    let hint = if is_vain { HOW_TO_REMOVE_MORE } else { "" };
     Ok(tell(&format!(
-        "{}{} and {} that no row names were removed, {}; every record is kept",
+        "{}{} and {} that no row names were removed, {}; every record is kept{hint}",
         by_age.unwrap_or_default(),
         count(pieces, "piece"),
         count(spools, "spool"),

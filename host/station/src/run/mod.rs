@@ -121,7 +121,8 @@ pub enum RunError {
     /// none of them is to blame.
     #[error(transparent)]
     PlanFile(#[from] Saying),
-    /// The run is over, but its result could not be saved, so there is none.
+    /// The run is over, but its result could not be saved, so there is none. Most often the disk is full: `halfrow-station prune` makes
+    /// room while the station is stopped, as the handbook's page on storage says.
     #[error(
         "the result of run {run} could not be saved, so there is none; test the board again when this is put right"
     )]

@@ -76,7 +76,8 @@ pub enum StoreError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The station's database refused an operation.
+    /// The station's database refused an operation. Most often its disk is full: `halfrow-station prune` makes room while the station
+    /// is stopped, as the handbook's page on storage says.
     #[error("the database {} refuses {doing}; check that its folder is writable and has space", path.display())]
     Database {
         /// The file.

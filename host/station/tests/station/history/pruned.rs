@@ -1,10 +1,11 @@
-//! How old evidence is by a clock that is wrong.
+//! What is removed by its age, and how old evidence is by a clock that is wrong.
 
 use std::path::Path;
 use std::process::Command;
 
 use halfrow_station::check::check;
 
+use super::commands::did;
 use super::made::{DAY_MS, End, HOUR_MS, Made, Run, id};
 use crate::clocks::Clocks;
 use crate::common::{Did, now_ms, program, untold};
@@ -31,6 +32,21 @@ fn years_ahead(years: i64, data: &Path, arguments: &[&str]) -> Did {
 }
 
 const PRUNE: [&str; 3] = ["prune", "--older-than", "400"];
+
+/// Whoever makes room on a full disk finds nothing removed otherwise, and does not know why.
+#[test]
+fn a_prune_that_removes_nothing_says_how_the_evidence_of_earlier_runs_is_removed() {
+    let data = aged().closed();
+    let pruned = |more: &[&str]| {
+        let prune = [&["prune", "--operator", "weber"], more].concat();
+        did(&data, &prune).1
+    };
+    let none = "0 pieces and 0 spools that no row names were removed, 0 bytes; every record is kept";
+    let how = "; with --older-than DAYS the evidence of earlier runs is removed, too\n";
+    assert_eq!(pruned(&[]), format!("{none}{how}"));
+    let one = "1 piece of evidence was removed, 3 bytes; ";
+    assert_eq!(pruned(&["--older-than", "400"]), format!("{one}{none}\n"));
+}
 
 /// Whatever is removed cannot be brought back. A time server may tell a wrong year, and so may whoever sets the clock.
 #[test]
