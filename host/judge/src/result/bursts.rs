@@ -52,7 +52,7 @@ impl From<&TableSet> for Corner {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EqualAtSpeed {
     /// Frames.
-    pub frames: u32,
+    pub frames: u64,
     /// The pixel clock that the board names, in hertz; 0 when it names none.
     pub clock_hz: u32,
     /// What that clock was measured to be.
@@ -61,7 +61,7 @@ pub struct EqualAtSpeed {
     /// How long the frames took on that clock, in seconds.
     pub seconds: Option<f64>,
     /// Frames that waited until the host had the records of earlier ones.
-    pub held_back: u32,
+    pub held_back: u64,
     /// Other settings with which frames were equal too.
     #[serde(default)]
     pub corners: u32,

@@ -78,9 +78,9 @@ pub enum Finding {
     /// All frames that the board made on its own are right, but not at the full pixel clock: some had pauses.
     PausedAtSpeed {
         /// Frames.
-        frames: u32,
+        frames: u64,
         /// Those with pauses.
-        paused: u32,
+        paused: u64,
     },
     /// The pixel clock that the board makes is not the one that it names.
     ClockNotAsNamed {
@@ -199,11 +199,11 @@ pub enum Finding {
     /// Frames that the board made on its own at the full pixel clock differ from the reference.
     DiffersAtSpeed {
         /// How many.
-        wrong: u32,
+        wrong: u64,
         /// Of so many.
-        frames: u32,
+        frames: u64,
         /// The first of them, counted from the first of the burst.
-        first: u32,
+        first: u64,
         /// What making it again has shown.
         repetition: Repetition,
         /// The likeliest cause.
@@ -213,12 +213,12 @@ pub enum Finding {
         others: usize,
         /// What the cause leaves unexplained, if anything.
         #[serde(default)]
-        short: Option<Shortfall>,
+        short: Option<Box<Shortfall>>,
     },
     /// A frame that the board made on its own has the right samples, but the board counted something wrongly.
     MiscountedAtSpeed {
         /// The frame, counted from the first of the burst.
-        frame: u32,
+        frame: u64,
         /// What.
         count: BurstCount,
         /// What the board counts.

@@ -19,7 +19,7 @@ pub(super) fn section(finding: &Finding) -> Markup {
     }
 }
 
-fn of_row(frame: u32, row: usize, kept: &KeptRow) -> Markup {
+fn of_row(frame: u64, row: usize, kept: &KeptRow) -> Markup {
     let KeptRow { generation, differences, first } = kept;
     html! {
         section {

@@ -122,7 +122,7 @@ pub(super) fn in_corner(corner: Corner, found: &Finding) -> String {
 }
 
 /// What the board counts otherwise than it should.
-pub(super) fn miscounted(frame: u32, what: BurstCount, counted: u32, right: u32) -> String {
+pub(super) fn miscounted(frame: u64, what: BurstCount, counted: u32, right: u32) -> String {
     if what == BurstCount::Records {
         return format!("the board gives {} for {} at speed", words(what, counted), count(right, "frame"));
     }
@@ -131,8 +131,8 @@ pub(super) fn miscounted(frame: u32, what: BurstCount, counted: u32, right: u32)
 }
 
 pub(super) fn differs(
-    (wrong, frames): (u32, u32),
-    first: u32,
+    (wrong, frames): (u64, u64),
+    first: u64,
     repetition: &Repetition,
     suspicion: Option<String>,
 ) -> String {

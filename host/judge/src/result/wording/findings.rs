@@ -96,7 +96,9 @@ pub fn sentence(finding: &Finding) -> String {
              {counted_least} to {counted_most}"
         ),
         Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short } => {
-            let suspect = suspect.as_deref().map(|suspect| suspicion(Some(suspect), *others, *short));
+            let suspect = suspect
+                .as_deref()
+                .map(|suspect| suspicion(Some(suspect), *others, short.as_deref().copied()));
             at_speed::differs((*wrong, *frames), *first, repetition, suspect)
         }
         Finding::MiscountedAtSpeed { frame, count, counted, right } => {

@@ -298,6 +298,7 @@ mod tests {
             };
             let (frames, suspect) = (2, at_speed);
             let repetition = Repetition::NotNeeded {};
+            let short = short.map(Box::new);
             let at_speed =
                 Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short };
             [streamed, at_speed].map(|finding| sentence(&finding))

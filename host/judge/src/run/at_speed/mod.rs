@@ -121,7 +121,11 @@ impl Run<'_> {
         let BurstSeen { frames, paused, held_back, .. } = watched;
         let clock_hz = self.board.capabilities.clock_hz;
         let seconds = (clock_hz > 0 && clock.allows(clock_hz)).then(|| plan.seconds(frames));
-        self.note_right(paused, EqualAtSpeed { frames, seen: clock, seconds, held_back, corners, ..NONE });
+        let (frames, held_back) = (u64::from(frames), u64::from(held_back));
+        self.note_right(
+            paused.into(),
+            EqualAtSpeed { frames, seen: clock, seconds, held_back, corners, ..NONE },
+        );
         Ok(exercised)
     }
 
@@ -236,7 +240,7 @@ impl Run<'_> {
     }
 
     /// Notes that all frames are right, of which `paused` had pauses.
-    fn note_right(&mut self, paused: u32, right: EqualAtSpeed) {
+    fn note_right(&mut self, paused: u64, right: EqualAtSpeed) {
         let (clock_hz, frames) = (self.board.capabilities.clock_hz, right.frames);
         let equal = Finding::EqualAtSpeed(EqualAtSpeed { clock_hz, ..right });
         match paused {

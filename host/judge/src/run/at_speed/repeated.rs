@@ -108,6 +108,7 @@ impl Run<'_> {
             suspects.extend(at_speed(repetition.streamed(), None));
         }
         let Lead { suspect, others, short } = Lead::of(&suspects);
+        let ([wrong, frames, first], short) = ([wrong, frames, first].map(u64::from), short.map(Box::new));
         let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short };
         End::suspecting(CheckName::AtSpeed, finding, suspects)
     }

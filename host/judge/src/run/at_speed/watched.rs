@@ -96,7 +96,7 @@ impl BurstSeen {
         let wrong = counts.into_iter().find(|(_, counted, right)| counted != right);
         if let Some((count, counted, right)) = wrong {
             self.miscounted += 1;
-            let finding = Finding::MiscountedAtSpeed { frame: n, count, counted, right };
+            let finding = Finding::MiscountedAtSpeed { frame: n.into(), count, counted, right };
             self.miscount.get_or_insert(MiscountSeen { finding, at: watch.board.now() });
         }
     }
@@ -105,7 +105,8 @@ impl BurstSeen {
     fn compare_count(&mut self, plan: &BurstPlan, records: u32, at: Duration) {
         let (frame, count) = (plan.frames, BurstCount::Records);
         if records > frame {
-            let finding = Finding::MiscountedAtSpeed { frame, count, counted: records, right: frame };
+            let finding =
+                Finding::MiscountedAtSpeed { frame: frame.into(), count, counted: records, right: frame };
             self.miscount.get_or_insert(MiscountSeen { finding, at });
         }
     }

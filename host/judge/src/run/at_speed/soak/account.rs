@@ -121,7 +121,7 @@ impl SoakAccount {
             // The frame of such a finding is how many the burst has.
             Finding::MiscountedAtSpeed { count: BurstCount::Records, .. } => {}
             Finding::DiffersAtSpeed { first: frame, .. } | Finding::MiscountedAtSpeed { frame, .. } => {
-                *frame = counted(before + u64::from(*frame));
+                *frame += before;
             }
             _ => {}
         }
@@ -163,7 +163,7 @@ impl SoakAccount {
     /// The first difference, with the counts of all frames of the soak.
     fn of_all_frames(&self, mut end: End) -> End {
         if let End::Failed { finding: Finding::DiffersAtSpeed { wrong, frames, .. }, .. } = &mut end {
-            (*wrong, *frames) = (counted(self.report.wrong), counted(self.report.frames));
+            (*wrong, *frames) = (self.report.wrong, self.report.frames);
         }
         end
     }
@@ -182,19 +182,16 @@ fn tell_more(first: &mut End, seen: &[Suspect]) {
         && !names_row(suspects)
         && names_row(seen)
     {
-        Lead { suspect: *suspect, others: *others, short: *short } = Lead::of(seen);
+        let lead = Lead::of(seen);
+        (*suspect, *others, *short) = (lead.suspect, lead.others, lead.short.map(Box::new));
         *suspects = seen.to_vec();
     }
-}
-
-/// A count that saturates at the greatest number of a finding.
-pub(super) fn counted(count: u64) -> u32 {
-    u32::try_from(count).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::result::Repetition;
 
     fn is_over(seconds: f64, now: Duration) -> bool {
         SoakAccount::new(SoakLength::Time { seconds }, Duration::ZERO).is_over(now)
@@ -209,5 +206,28 @@ mod tests {
         assert!(!is_over(1.0, Duration::ZERO) && is_over(1.0, Duration::from_secs(1)));
         let a_year = Duration::from_secs(365 * 86_400);
         assert!([1e300, f64::INFINITY].iter().all(|&seconds| !is_over(seconds, a_year)));
+    }
+
+    /// A board with small frames makes as many of them in a night.
+    #[test]
+    fn a_difference_has_the_counts_of_all_frames_beyond_those_of_32_bits() {
+        let mut account = SoakAccount::new(SoakLength::Time { seconds: 64_000.0 }, Duration::ZERO);
+        (account.report.frames, account.report.wrong) = (6_000_000_000, 5_000_000_000);
+        let finding = Finding::DiffersAtSpeed {
+            wrong: 1,
+            frames: 2,
+            first: 4_900_000_000,
+            repetition: Repetition::NotNeeded {},
+            suspect: None,
+            others: 0,
+            short: None,
+        };
+        account.first = Some(End::failed(CheckName::AtSpeed, finding));
+        let Err(End::Failed { finding, .. }) = account.end(Duration::ZERO, Ok(())) else {
+            panic!("it differs")
+        };
+        let said = finding.sentence();
+        let told = "5,000,000,000 of 6,000,000,000 frames differ at speed, the first is frame 4,900,000,000";
+        assert!(said.starts_with(told), "{said}");
     }
 }

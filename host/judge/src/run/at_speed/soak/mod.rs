@@ -11,7 +11,7 @@ use super::watched::{BurstSeen, EndsEarly, MiscountSeen};
 use super::{NONE, price, tables_late};
 use crate::board::Bursts;
 use crate::progress::{Event, Step};
-use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength};
+use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength, SoakReport};
 use crate::run::findings::exercised::Exercised;
 use crate::run::findings::{During, End};
 use crate::run::plan::{DECOY, JUDGED, Segment};
@@ -19,7 +19,7 @@ use crate::run::sessions::second_look::{LOOKS, unasked};
 use crate::run::steps::Run;
 use crate::tables::{Generation, datapath_of};
 use crate::verdict::Cause;
-use account::{LONGEST_BURST, SoakAccount, counted};
+use account::{LONGEST_BURST, SoakAccount};
 use played::Played;
 
 /// Whether a burst makes the same frame again and again, so that the board keeps a row of a frame that differs. A
@@ -80,7 +80,7 @@ impl Run<'_> {
         let ended = account.end(self.clock(), ended);
         let changes = account.change_would_show;
         let report = account.report;
-        let [frames, paused, held_back] = [report.frames, report.paused, report.held_back].map(counted);
+        let SoakReport { frames, paused, held_back, .. } = report;
         self.findings.soak = Some(report);
         ended?;
         let mut left = super::untested(changes, paused > 0);

@@ -19,9 +19,9 @@ impl Played {
     pub(super) fn finding(&self) -> Option<Finding> {
         let BurstSeen { frames, wrong, wrong_frames, miscount, .. } = &self.watched;
         let differs = wrong_frames.first().map(|first| Finding::DiffersAtSpeed {
-            wrong: *wrong,
-            frames: *frames,
-            first: first.n,
+            wrong: (*wrong).into(),
+            frames: (*frames).into(),
+            first: first.n.into(),
             repetition: Repetition::NotNeeded {},
             suspect: None,
             others: 0,
