@@ -1,9 +1,9 @@
 //! What people are told: in English, and as a code with parameters from which pages say it in other languages.
 
 use std::error::Error;
-use std::fmt;
+use std::{fmt, iter};
 
-use halfrow::result::codes::Parameter;
+use halfrow::result::codes::{FOREIGN, Parameter};
 use halfrow::result::{Finding, Parameters, Problem};
 use halfrow::words::{count, verb};
 use serde::{Deserialize, Serialize, Serializer};
@@ -106,6 +106,15 @@ impl Said {
     /// A sentence in English that has no code.
     pub(crate) fn uncoded(message: String) -> Self {
         Self { code: String::new(), parameters: Parameters::new(), message, causes: Vec::new() }
+    }
+
+    /// The sentence with its causes, and the codes of both behind it, as a log has it: who reads a log looks a code up, and a program
+    /// that watches one finds no sentence that stays.
+    pub(crate) fn with_codes(&self) -> String {
+        let all = iter::once(self).chain(&self.causes).map(|said| said.code.as_str());
+        let mut codes: Vec<_> = all.filter(|code| !["", FOREIGN].contains(code)).collect();
+        codes.dedup();
+        if codes.is_empty() { self.to_string() } else { format!("{self} ({})", codes.join(", ")) }
     }
 
     /// An error of this program with its causes.
@@ -330,6 +339,9 @@ mod tests {
     use halfrow::board::BoardError;
     use halfrow::result::codes;
 
+    use crate::run::RunError;
+    use crate::store::StoreError;
+
     #[test]
     fn a_board_that_another_session_holds_is_scanned_again_and_not_taken_over() {
         let told = Said::of(&BoardError::Held { seconds: 6.6 }).at_the_station();
@@ -337,6 +349,25 @@ mod tests {
         assert_eq!(told.scan_again().as_deref(), Some("Scan the label again in 7 s."));
         let other = Said::of(&BoardError::SessionLost).at_the_station();
         assert_eq!((other.code.as_str(), other.scan_again()), ("session-lost", None), "the control");
+    }
+
+    /// The codes are those of docs/STATION-CODES.md.
+    #[test]
+    fn a_log_has_the_codes_of_an_error_and_of_its_causes_behind_their_sentences() {
+        let error = RunError::NotBegun(Box::new(StoreError::ClockApart { minutes: 7 }));
+        let said = Said::of(&error);
+        assert_eq!(said.with_codes(), format!("{said} (run-not-begun, clocks-apart)"));
+        let uncoded = Said::uncoded("no".to_owned());
+        assert_eq!(uncoded.with_codes(), "no", "there is none");
+        let refused =
+            Said { code: "plant-refuses".to_owned(), causes: vec![uncoded.clone()], ..uncoded.clone() };
+        assert_eq!(refused.with_codes(), "no: no (plant-refuses)");
+        let foreign = Said { code: "foreign-cause".to_owned(), ..uncoded };
+        assert_eq!(
+            Said { causes: vec![foreign], ..refused }.with_codes(),
+            "no: no (plant-refuses)",
+            "which says nothing"
+        );
     }
 
     #[test]

@@ -253,7 +253,7 @@ impl AtWork {
                 let [run, serial] = of.map_or([None, None], |of| of.map(Some));
                 // Pages show it only until the next board is judged in the lane.
                 let unit = serial.as_ref().map_or_else(String::new, |serial| format!(", {serial}"));
-                tracing::warn!("lane {lane}{unit}: {said}");
+                tracing::warn!("lane {lane}{unit}: {}", said.with_codes());
                 self.tell(&News::Hook { lane, run, serial, said });
             }
         }
@@ -333,7 +333,7 @@ impl AtWork {
         match effect {
             Effect::Begin(_) => self.happened(lane, Event::NotBegun { why }),
             Effect::Recover { run } => {
-                tracing::warn!("the run {run} is not saved yet: {why}");
+                tracing::warn!("the run {run} is not saved yet: {}", why.with_codes());
                 if let Some(of) = self.lanes.get_mut(lane) {
                     of.unrecovered = Some(run);
                 }

@@ -94,12 +94,13 @@ impl Logged {
             Event::NotBegun { why } => {
                 let now = reason(why)?;
                 let is_new = self.refused.replace(now) != Some(now);
-                is_new.then(|| format!("lane {name} begins no run: {why}"))
+                is_new.then(|| format!("lane {name} begins no run: {}", why.with_codes()))
             }
             Event::Begun { .. } => self.refused.take().map(|_| format!("lane {name} begins runs again")),
             Event::Unsaved { why } | Event::NotAtPlant { why } => {
                 let was_unsaved = std::mem::replace(&mut self.is_unsaved, true);
-                (!was_unsaved).then(|| format!("lane {name} shows no verdict on its board: {why}"))
+                (!was_unsaved)
+                    .then(|| format!("lane {name} shows no verdict on its board: {}", why.with_codes()))
             }
             Event::Ended(_) => {
                 let was_unsaved = std::mem::take(&mut self.is_unsaved);

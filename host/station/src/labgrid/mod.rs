@@ -142,7 +142,7 @@ pub fn give_back<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
         places(boards).for_each(|place| {
             scope.spawn(|| {
                 if let Err(error) = place.free() {
-                    tracing::warn!("{}: {}", place.name, Said::of(&error));
+                    tracing::warn!("{}: {}", place.name, Said::of(&error).with_codes());
                 }
             });
         });

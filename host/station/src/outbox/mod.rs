@@ -189,7 +189,11 @@ fn beat(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) {
     match &read {
         Ok(left) => standing.left = Some(*left),
         Err(error) => {
-            tracing::error!("what waits for {} cannot be counted: {}", sink.name(), Said::of(error));
+            tracing::error!(
+                "what waits for {} cannot be counted: {}",
+                sink.name(),
+                Said::of(error).with_codes()
+            );
         }
     }
     let Some(left) = standing.left else { return };
@@ -243,7 +247,7 @@ fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
         }
         let looked = looked(store, &mut *sink, &mut standing, &mut quiet);
         let round = looked.unwrap_or_else(|error| {
-            tracing::error!("what is to be sent on stays here: {}", Said::of(&error));
+            tracing::error!("what is to be sent on stays here: {}", Said::of(&error).with_codes());
             Round { is_away: true, ..Round::default() }
         });
         if round.sent + round.failed > 0 {

@@ -25,11 +25,21 @@ impl Standing {
             Undelivered::Away(said) => self.away(sink, said),
             Undelivered::NotNow(said) | Undelivered::Early(said) if !self.is_behind => {
                 self.is_behind = true;
-                tracing::warn!("{} does not take {} for now: {said}", called(sink), named(entry));
+                tracing::warn!(
+                    "{} does not take {} for now: {}",
+                    called(sink),
+                    named(entry),
+                    said.with_codes()
+                );
             }
             Undelivered::NotNow(_) | Undelivered::Early(_) => {}
             Undelivered::Refused(said) => {
-                tracing::warn!("{} refuses {}, which waits for a person: {said}", called(sink), named(entry));
+                tracing::warn!(
+                    "{} refuses {}, which waits for a person: {}",
+                    called(sink),
+                    named(entry),
+                    said.with_codes()
+                );
             }
         }
     }
@@ -39,7 +49,7 @@ impl Standing {
         // A plant that is put back is unreachable first, and only what it says later calls for a person.
         if self.away.as_ref() != Some(&said.code) {
             self.away = Some(said.code.clone());
-            tracing::warn!("{} takes nothing, and all waits for it: {said}", called(sink));
+            tracing::warn!("{} takes nothing, and all waits for it: {}", called(sink), said.with_codes());
         }
     }
 

@@ -292,7 +292,7 @@ impl App {
             Err(error) => (None, Some(Said::of(&error))),
         };
         if let Some(why) = &untold {
-            tracing::error!("{why}");
+            tracing::error!("{}", why.with_codes());
         }
         if let Some(user) = user.as_mut().filter(|_| self.is_plant()) {
             user.who = user.who.min(Who::Reader);

@@ -25,6 +25,8 @@ pub(super) struct Trouble {
     status: StatusCode,
     visit: Box<Visit>,
     told: Sentence,
+    /// The code by which the handbook lists it, if it has one.
+    code: Option<String>,
     /// Whether the page that asked has to be loaded anew first.
     is_stale: bool,
     /// Where a login leads, if the answer is the form that takes a badge.
@@ -44,11 +46,12 @@ impl Trouble {
 
     /// What has a code, in the visitor's language.
     pub(super) fn telling(visit: &Visit, status: StatusCode, said: &Said) -> Self {
-        Self::saying(visit, status, visit.words.tell(said))
+        let code = Some(said.code.clone()).filter(|code| !code.is_empty());
+        Self { code, ..Self::saying(visit, status, visit.words.tell(said)) }
     }
 
     fn saying(visit: &Visit, status: StatusCode, told: Sentence) -> Self {
-        Self { status, visit: Box::new(visit.clone()), told, is_stale: false, login: None }
+        Self { status, visit: Box::new(visit.clone()), told, code: None, is_stale: false, login: None }
     }
 
     /// The same on the page that takes a badge, from which a login leads to `page`: a scanner has no way back.
@@ -93,14 +96,14 @@ impl Trouble {
     /// The store refuses. The reason is logged as well, for the engineer.
     pub(super) fn store(visit: &Visit, error: &StoreError) -> Self {
         let said = Said::of(error);
-        tracing::error!("{said}");
+        tracing::error!("{}", said.with_codes());
         Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, &said)
     }
 
     /// It cannot be found out who somebody is.
     pub(super) fn secret(visit: &Visit, error: &SecretError) -> Self {
         let said = Said::of(error);
-        tracing::error!("{said}");
+        tracing::error!("{}", said.with_codes());
         Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, &said)
     }
 
@@ -125,7 +128,7 @@ impl IntoResponse for Trouble {
 
 impl Trouble {
     fn page(self) -> Response {
-        let Self { status, visit, told, is_stale, login } = self;
+        let Self { status, visit, told, code, is_stale, login } = self;
         if visit.is_script {
             let text = json!({ "is_taken": false, "said": told.text, "is_stale": is_stale }).to_string();
             return (status, [(CONTENT_TYPE, "application/json")], text).into_response();
@@ -133,8 +136,13 @@ impl Trouble {
         if let Some(page) = login {
             return login::asked(&visit, Some(&told), &page).with_status(&visit, status);
         }
-        let content =
-            html! { section.trouble { h1 { (status.as_u16()) } p role="alert" { (show::told(&told)) } } };
+        let content = html! {
+            section.trouble {
+                h1 { (status.as_u16()) }
+                p role="alert" { (show::told(&told)) }
+                @if let Some(code) = code { p { small { (code) } } }
+            }
+        };
         let page = Page { here: Here::Elsewhere, title: visit.say("trouble.title"), head: html! {}, content };
         page.with_status(&visit, status)
     }

@@ -213,7 +213,7 @@ fn give_back(plant: &PlantLink, held: &Held) {
         tracing::warn!(
             "the board {} is free when its lease has run out: {}",
             held.lease().board,
-            Said::of(&error)
+            Said::of(&error).with_codes()
         );
     }
 }

@@ -100,7 +100,7 @@ impl Work<'_> {
             let about_ms = match self.claim() {
                 Ok(None) => IDLE_MS,
                 Err(error) if error.may_pass() => {
-                    tracing::warn!("there is no job for now: {}", Said::of(&error));
+                    tracing::warn!("there is no job for now: {}", Said::of(&error).with_codes());
                     AWAY_MS
                 }
                 found => return found,
@@ -211,7 +211,11 @@ impl Work<'_> {
         loop {
             match self.plant.ask(|plant| plant.take_out(board, by)) {
                 Err(error) if error.may_pass() && stop().is_none() => {
-                    tracing::warn!("the board {board} is not out yet ({}): {}", &*why, Said::of(&error));
+                    tracing::warn!(
+                        "the board {board} is not out yet ({}): {}",
+                        &*why,
+                        Said::of(&error).with_codes()
+                    );
                     rest(AWAY_MS, stop);
                 }
                 told => return told.map(drop),
@@ -287,7 +291,7 @@ impl Work<'_> {
         while stop().is_none() {
             match self.plant.ask(|plant| plant.see(station)) {
                 Err(error) if may_be_away && error.is_away() => {
-                    tracing::warn!("no job is taken for now: {}", Said::of(&error));
+                    tracing::warn!("no job is taken for now: {}", Said::of(&error).with_codes());
                     rest(AWAY_MS, stop);
                 }
                 heard => return heard.map(|clock| self.store.with(|store| store.heard_plant(clock))),
@@ -308,7 +312,10 @@ impl Work<'_> {
     fn sent(&self, run: &str, is_over: &dyn Fn() -> bool) -> Sent {
         let folder = self.store.with(|store| store.folder().clone());
         awaited(&folder, run, is_over).unwrap_or_else(|error| {
-            tracing::warn!("whether the plant has the run {run} is not known: {}", Said::of(&error));
+            tracing::warn!(
+                "whether the plant has the run {run} is not known: {}",
+                Said::of(&error).with_codes()
+            );
             Sent::NotYet
         })
     }
@@ -338,7 +345,7 @@ fn rest(about_ms: u64, stop: &dyn Fn() -> Option<StoppedBy>) {
 /// Warns that a job which could not be given `back` is free only later.
 fn free_later(job: &str, back: Result<(), StoreError>) {
     if let Err(error) = back {
-        tracing::warn!("the job {job} is free when its lease has run out: {}", Said::of(&error));
+        tracing::warn!("the job {job} is free when its lease has run out: {}", Said::of(&error).with_codes());
     }
 }
 

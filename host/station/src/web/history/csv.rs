@@ -87,8 +87,9 @@ fn lines(now: &Snapshot, page: &runs::Page, is_first: bool) -> Result<Vec<u8>, E
     for (run, hash) in page.runs.iter().filter_map(|run| Some((&run.id, run.record_sha256.as_ref()?))) {
         let record = now.record(hash).map_err(ExportError::from);
         let added = record.and_then(|(record, _)| table.add(&record));
-        added
-            .inspect_err(|error| tracing::error!("a table ends before the run {run}: {}", Said::of(error)))?;
+        added.inspect_err(|error| {
+            tracing::error!("a table ends before the run {run}: {}", Said::of(error).with_codes());
+        })?;
     }
     Ok(table.end())
 }

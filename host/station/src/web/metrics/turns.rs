@@ -48,7 +48,9 @@ pub(super) async fn counted<T: Send + 'static>(
     });
     match found.await {
         Ok(Ok(Ok(found))) => return Some(found),
-        Ok(Ok(Err(error))) => tracing::warn!("what is counted cannot be told: {}", Said::of(&error)),
+        Ok(Ok(Err(error))) => {
+            tracing::warn!("what is counted cannot be told: {}", Said::of(&error).with_codes());
+        }
         // The error is in the log already.
         Ok(Err(_)) => {}
         Err(_) => tracing::warn!("what is counted was not read within {} s", PATIENCE.as_secs()),
