@@ -1,10 +1,12 @@
 //! What all pages work with.
 
-use std::io;
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::{io, mem};
 
+use axum::http::StatusCode;
 use halfrow::words::plain;
+use parking_lot::Mutex;
 use tokio::task;
 
 use super::access::Access;
@@ -16,6 +18,7 @@ use super::visit::{User, Visit};
 use crate::engine::Engine;
 use crate::history::counts::Tally;
 use crate::plan::Plan;
+use crate::said::Said;
 use crate::secret::SecretError;
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Deed, Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError};
@@ -41,6 +44,8 @@ struct Parts {
     /// For clients that ask every few seconds.
     turns: Turns,
     source: Source,
+    /// The code of why the audit took nothing when something was last to be entered.
+    unaudited: Mutex<Option<String>>,
 }
 
 /// The source of what is shown.
@@ -77,7 +82,15 @@ impl App {
         let (plans, mark) = (named(&settings), mark(&settings));
         let (source, turns) =
             (Source::Station(Lanes { engine, live, listens, hints }), Turns::new(Tally::new(true, 0)));
-        Ok(Self(Arc::new(Parts { settings, access, plans, mark, turns, source })))
+        Ok(Self(Arc::new(Parts {
+            settings,
+            access,
+            plans,
+            mark,
+            turns,
+            source,
+            unaudited: Mutex::default(),
+        })))
     }
 
     /// The results of all stations of the plant at `address`.
@@ -85,7 +98,7 @@ impl App {
     pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
         let source = Source::Plant(PlantPool::new(address));
         let (plans, mark, turns) = (String::new(), String::new(), Turns::new(Tally::new(false, RESTS)));
-        Self(Arc::new(Parts { settings, access, plans, mark, turns, source }))
+        Self(Arc::new(Parts { settings, access, plans, mark, turns, source, unaudited: Mutex::default() }))
     }
 
     /// Whether it shows the results of all stations.
@@ -181,12 +194,25 @@ impl App {
                 self.blocking(visit, note).await?
             }
         };
+        self.log_audit(entered.as_ref().err().map(|error| Said::of(error)));
         entered.map_err(|error| {
             if let Ok(lanes) = self.lanes(visit) {
                 lanes.engine.refused_by_store();
             }
-            Trouble::store(visit, &error)
+            Trouble::telling(visit, StatusCode::SERVICE_UNAVAILABLE, &Said::of(&error))
         })
+    }
+
+    /// Logs once for each reason that the audit takes nothing, and once that it does again.
+    // The end of it is a warning, too, so that a log of only warnings has both its beginning and its end.
+    fn log_audit(&self, refused: Option<Said>) {
+        let code = refused.as_ref().map(|said| said.code.clone());
+        let before = mem::replace(&mut *self.0.unaudited.lock(), code.clone());
+        match refused {
+            Some(said) if before != code => tracing::error!("{}", said.with_codes()),
+            None if before.is_some() => tracing::warn!("the audit takes entries again"),
+            _ => {}
+        }
     }
 
     /// What `look` finds in the store as it is at one moment. Other requests go on meanwhile.

@@ -16,3 +16,4 @@ mod secrets;
 mod slow;
 pub(crate) mod station;
 mod table;
+mod unaudited;
