@@ -127,7 +127,7 @@ fn a_database_of_every_released_schema_opens_and_exports_the_same_bytes() {
 }
 
 /// What is told of the upgrade of a database of this schema.
-fn upgraded(number: usize) -> String {
+pub(super) fn upgraded(number: usize) -> String {
     let next = number + 1;
     if next > newest() {
         return String::new();
@@ -139,81 +139,15 @@ fn upgraded(number: usize) -> String {
     )
 }
 
-/// Figures may change with it, and whoever goes back looks for the copy.
-#[test]
-fn an_upgrade_is_told_once_with_what_is_kept_of_before() {
-    let data = left(1);
-    let call = || did(&data, &["prune", "--operator", "weber"]);
-    let (code, _, told) = call();
-    assert_eq!((code, told), (0, upgraded(1)));
-    let (code, _, told) = call();
-    assert!(code == 0 && told.is_empty(), "{told}");
-}
-
 /// The copy that is kept of a database with this schema.
-fn before(number: usize) -> Vec<String> {
+pub(super) fn before(number: usize) -> Vec<String> {
     (number < newest()).then(|| format!("station.before-{}.db", number + 1)).into_iter().collect()
 }
 
 /// The copies of earlier databases in this folder, finished or not.
-fn copies(data: &Path) -> Vec<String> {
+pub(super) fn copies(data: &Path) -> Vec<String> {
     let names = fs::read_dir(data).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     names.filter(|name| name.contains("before")).collect()
-}
-
-#[test]
-fn a_database_that_cannot_be_brought_up_to_date_is_the_earlier_programs_still() {
-    let data = left(1);
-    // The newest schema has another table of this name.
-    change(data.path(), "CREATE TABLE mismatch (n)");
-    let refused = Store::open(&Folder::new(data.path())).unwrap_err();
-    assert!(format!("{refused:?}").contains("mismatch already exists"), "{refused:?}");
-    assert_eq!(query(data.path(), "SELECT max(n) FROM schema_version"), ["1"]);
-    // The copy is made once, however often the upgrade is tried.
-    assert!(Store::open(&Folder::new(data.path())).is_err());
-    assert_eq!(copies(data.path()), before(1));
-}
-
-/// An older database may be brought up to date in the folder of a newer one, for example when a copy that is too old is tried.
-#[test]
-fn a_copy_of_before_an_upgrade_is_not_written_over() {
-    let data = left(1);
-    let first = data.path().join("station.before-2.db");
-    fs::write(&first, "of the day of the upgrade").unwrap();
-    drop(Store::open(&Folder::new(data.path())).unwrap());
-    assert_eq!(fs::read_to_string(&first).unwrap(), "of the day of the upgrade");
-    let mut all = copies(data.path());
-    all.sort();
-    assert_eq!(all, ["station.before-2.2.db", "station.before-2.db"]);
-    let copy = Connection::open(data.path().join(&all[0])).unwrap();
-    assert_eq!(names(&copy, "SELECT CAST(max(n) AS TEXT) FROM schema_version"), ["1"]);
-}
-
-/// The disk is full before the copy is complete.
-#[test]
-fn of_a_copy_that_was_not_made_nothing_is_left() {
-    let data = left(1);
-    let call = "trap '' XFSZ; ulimit -f 64; exec \"$0\" prune --operator weber --data \"$1\"";
-    let did = Command::new("sh").args(["-c", call]).arg(program()).arg(data.path()).output().unwrap();
-    let said = String::from_utf8(did.stderr).unwrap();
-    assert_eq!(did.status.code(), Some(3), "{said}");
-    assert!(said.contains("a copy before a new version"), "{said}");
-    assert_eq!(copies(data.path()), Vec::<String>::new());
-    assert_eq!(query(data.path(), "SELECT max(n) FROM schema_version"), ["1"]);
-    // The control: with room it is brought up to date.
-    drop(Store::open(&Folder::new(data.path())).unwrap());
-    assert_eq!(copies(data.path()), before(1));
-}
-
-/// A kill in between leaves these files.
-#[test]
-fn of_a_copy_that_was_not_finished_nothing_is_left() {
-    let data = left(1);
-    for name in ["station.before-2.partial", "station.before-2.partial-journal"] {
-        fs::write(data.path().join(name), "as far as it came").unwrap();
-    }
-    drop(Store::open(&Folder::new(data.path())).unwrap());
-    assert_eq!(copies(data.path()), before(1));
 }
 
 /// The database is of an earlier day, and the station of the folder has a number for its log.
@@ -406,7 +340,7 @@ fn database(number: usize, of: &Made) -> String {
     text + &names(&database, indexes).join("\n") + "\n"
 }
 
-fn names(database: &Connection, text: &str) -> Vec<String> {
+pub(super) fn names(database: &Connection, text: &str) -> Vec<String> {
     let mut statement = database.prepare(text).unwrap();
     statement.query_map([], |row| row.get(0)).unwrap().map(Result::unwrap).collect()
 }
