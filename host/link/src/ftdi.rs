@@ -82,14 +82,29 @@ pub(crate) fn list(rates: &[u32]) -> String {
 mod tests {
     use super::*;
 
+    const RULES: &str = include_str!("../../../scripts/70-halfrow.rules");
+
     /// Without this, the rules are recommended to users whom they do not help.
     #[test]
     fn the_rules_let_users_open_every_chip_that_is_opened() {
-        let rules = include_str!("../../../scripts/70-halfrow.rules");
-        let listed = rules.split("ATTRS{idProduct}==\"").nth(1).unwrap().split('"').next().unwrap();
+        let listed = RULES.split("ATTRS{idProduct}==\"").nth(1).unwrap().split('"').next().unwrap();
         let mut listed: Vec<_> = listed.split('|').map(|id| u16::from_str_radix(id, 16).unwrap()).collect();
         listed.sort_unstable();
         assert_eq!(listed, PRODUCTS);
+    }
+
+    /// The same chips are in many an adapter that is no board's, whose users are in the group that the system gives its port.
+    #[test]
+    fn the_rules_leave_serial_ports_to_the_group_that_they_have() {
+        let rules: Vec<_> = RULES.lines().filter(|line| !line.starts_with('#')).collect();
+        let of_ports: Vec<_> = rules.iter().filter(|rule| rule.contains("SUBSYSTEM==\"tty\"")).collect();
+        assert!(!of_ports.is_empty(), "no rule is for ports");
+        for rule in rules.iter().filter(|rule| !rule.contains("SUBSYSTEM==\"usb\"")) {
+            for taken in ["GROUP=", "OWNER=", "MODE="] {
+                assert!(!rule.contains(taken), "{rule}");
+            }
+        }
+        assert!(of_ports.iter().all(|rule| rule.contains("TAG+=\"uaccess\"")), "{of_ports:?}");
     }
 
     #[test]
