@@ -152,7 +152,6 @@ fn what_contradicts_itself_is_refused_before_anything_is_loaded() {
     recorded(&folder, "minispartan6plus", "00000001");
     refused(&folder, &["top.bit", "--onto", "ulx3s"], 2, "bitstream-for-other-board");
     refused(&folder, &["top.bit", "--onto", "moon"], 2, "usage-value-wrong");
-    refused(&folder, &["none.bit"], 2, "input-unreadable");
     folder.write("top.bit", "another bitstream");
     refused(&folder, &["top.bit"], 2, "bitstream-differs-from-record");
     recorded(&folder, "moon", "00000001");
@@ -183,6 +182,19 @@ fn a_board_that_can_never_be_greeted_is_refused_before_anything_is_loaded() {
         refused(&folder, &["top.bit", "--board", board], 2, error);
         assert!(!folder.path().join("called").exists(), "{board}");
     }
+}
+
+/// The path that the README shows is that of a file that everybody has to build.
+#[test]
+fn a_bitstream_that_is_not_there_is_told_with_what_names_its_build() {
+    let folder = with_loader(WORKS);
+    let error = refused(&folder, &["target/ulx3s/uart-25/top.bit"], 2, "bitstream-missing");
+    assert_eq!(error["parameters"], json!({ "path": "target/ulx3s/uart-25/top.bit" }));
+    let message = error["message"].as_str().unwrap();
+    assert!(message.contains("`halfrow boards`"), "{message}");
+    assert!(halfrow(["boards"]).stdout.contains("build: fpga/boards/ulx3s/build"));
+    // It is there, and cannot be read.
+    refused(&folder, &["top.bit/top.bit"], 2, "input-unreadable");
 }
 
 /// A board for every call may be one that cannot be loaded.

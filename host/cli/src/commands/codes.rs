@@ -59,6 +59,7 @@ codes::codes! {
         StationNotStarted [path] => "station-not-started",
     }
     LoadError {
+        Missing [path] => "bitstream-missing",
         RecordMalformed [path] => "bitstream-record-malformed",
         OtherBitstream [path, record] => "bitstream-differs-from-record",
         Nameless [path, known] => "bitstream-board-not-named",

@@ -10,6 +10,9 @@ use thiserror::Error;
 /// A bitstream that is not loaded.
 #[derive(Debug, Error)]
 pub(in crate::commands) enum LoadError {
+    /// There is no such bitstream: nobody has one before it is built.
+    #[error("there is no {}; build it as `halfrow boards` says for each board, or name the file where it is", path.display())]
+    Missing { path: PathBuf, source: io::Error },
     /// The record beside the bitstream cannot be understood.
     #[error("{} does not say how a bitstream was made; build it again, or remove that file", path.display())]
     RecordMalformed { path: PathBuf, source: serde_json::Error },

@@ -39,14 +39,22 @@ pub(super) fn place(bitstream: &Path) -> PathBuf {
     name.into()
 }
 
+/// Why `bitstream` was not read.
+fn unread(bitstream: &Path, source: io::Error) -> anyhow::Error {
+    let path = bitstream.to_owned();
+    match source.kind() {
+        io::ErrorKind::NotFound => LoadError::Missing { path, source }.into(),
+        _ => CallError::Unreadable { path, source }.into(),
+    }
+}
+
 /// The record of `bitstream`, if it has one.
 ///
 /// # Errors
 /// When the bitstream or its record cannot be read, or the record describes another bitstream.
 pub(super) fn read(bitstream: &Path) -> Result<Option<Record>, anyhow::Error> {
     check_regular(bitstream)?;
-    let bytes =
-        fs::read(bitstream).map_err(|source| CallError::Unreadable { path: bitstream.to_owned(), source })?;
+    let bytes = fs::read(bitstream).map_err(|source| unread(bitstream, source))?;
     let path = place(bitstream);
     check_regular(&path)?;
     let text = match text::read(&path, text::MAX_BYTES) {
