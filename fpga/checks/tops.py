@@ -96,10 +96,12 @@ def key_of(top, stage, tree):
     digest = hashlib.sha256()
     folders = [tree / "fpga/rtl", tree / "fpga/boards" / top.board, tree / "fpga/boards/common"]
     found = {path for folder in folders for kind in ("*.v", "*.vh", "*.prj") for path in folder.rglob(kind)}
-    for path in [pathlib.Path(__file__), *sorted(found)]:
-        digest.update(path.read_bytes())
+    digest.update(pathlib.Path(__file__).read_bytes())
+    for path in sorted(found):
+        digest.update(str(path.relative_to(tree)).encode() + b"\0" + path.read_bytes())
     version = subprocess.run(["yosys", "-V"], check=True, capture_output=True).stdout
-    digest.update(version + repr((top, stage)).encode())
+    # The commands, since other files have a part in them.
+    digest.update(version + repr((top, stage, script(top, stage, "header", tree))).encode())
     return digest.hexdigest()
 
 
