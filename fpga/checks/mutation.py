@@ -28,7 +28,7 @@ def key(count):
     tools = [mutants.version(tool) for tool in ("yosys", "verilator")]
     told = hashlib.sha256(f"{count} {SEED} {tools}".encode())
     files = [*rtl.RTL.glob("**/*.v*"), *mutants.BENCH.iterdir(), *HERE.glob("mut*"), *HERE.glob("*_bench.cpp"), *HERE.glob("*.hpp"),
-             HERE / "rtl.py"]
+             HERE / "rtl.py", HERE.parents[1] / "protocol/check_vectors.py"]
     for path in sorted(path for path in files if path.is_file() and path.suffix != ".md"):
         told.update(path.name.encode() + b"\0" + path.read_bytes())
     return told.hexdigest()
