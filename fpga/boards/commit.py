@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
-"""The commit that a bitstream is built from, from git.
-    commit.py     prints its first eight digits, or zeros where there is no git or no repository"""
+"""The commit that a bitstream is built from: from the archive of the sources, or from git.
+    commit.py     prints its first eight digits, or zeros where neither tells it"""
 
 import pathlib
+import re
 import subprocess
 
 FPGA = pathlib.Path(__file__).resolve().parent.parent
 NONE = "0" * 40
+# Filled in by `git archive`, so that an archive knows its commit.
+ARCHIVED = FPGA.parent / "host/judge/commit.txt"
 
 
-def git(*arguments):
-    """The output of git for the project, or None where there is no git or no repository."""
+def said(*arguments):
+    """The output of git in the project's folder, or None where it fails or is missing."""
     try:
         done = subprocess.run(["git", "-C", FPGA.parent, *arguments], capture_output=True, text=True)
     except OSError:
@@ -18,9 +21,16 @@ def git(*arguments):
     return done.stdout.strip() if done.returncode == 0 else None
 
 
+def git(*arguments):
+    """The output of git for the project, or None where it has no repository. One that the project was copied into has commits of
+    its own."""
+    return said(*arguments) if said("rev-parse", "--show-prefix") == "" else None
+
+
 def whole():
     """All forty digits."""
-    return git("rev-parse", "HEAD") or NONE
+    archived = re.match("[0-9a-f]{40}$", ARCHIVED.read_text()) if ARCHIVED.exists() else None
+    return archived[0] if archived else git("rev-parse", "HEAD") or NONE
 
 
 def start():
