@@ -62,6 +62,7 @@ const PARAMETERS: &str = include_str!("parameters.txt");
 const NAME: &str = "NAME=\"halfrow simulated board\"";
 
 const REMEDY: &str = "install it with `apt-get install verilator g++`, or build without `--features sim`";
+const NEWER: &str = "Debian 12 and Ubuntu 24.04 have 5; name another in the variable `VERILATOR`, or build without `--features sim`";
 
 fn main() {
     let folder = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
@@ -99,7 +100,7 @@ impl Verilator {
         // Verilator 5.006 2023-01-22 rev (Debian 5.006-3)
         let number = version.split_whitespace().nth(1).unwrap_or_default();
         if !number.starts_with("5.") {
-            fail(&format!("Verilator 5 is needed, and `{program}` is {number}; {REMEDY}"));
+            fail(&format!("Verilator 5 is needed, and `{program}` is {number}; {NEWER}"));
         }
         let root = said(Command::new(&program).args(["--getenv", "VERILATOR_ROOT"]));
         let root = root.unwrap_or_else(|| fail(&format!("`{program}` does not know its VERILATOR_ROOT")));
