@@ -20,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 
-from workspace import ROOT, TARGET
+from workspace import ROOT, SIM, TARGET
 
 DOCS = ROOT / "docs"
 PROGRAM = re.compile(r"(?:halfrow|halfrow-station|cargo|sudo|apt-get|createdb|systemctl|install|curl|python3|pip|git|scripts/\S+) ")
@@ -208,8 +208,7 @@ def check(page, programs):
 
 
 def main():
-    build = ["cargo", "build", "--quiet", "--workspace", "--features", "halfrow-tests/sim", "--locked", "--bin", "halfrow", "--bin",
-             "halfrow-station", "--test", "command_line"]
+    build = ["cargo", "build", "--quiet", *SIM, "--locked", "--bin", "halfrow", "--bin", "halfrow-station", "--test", "command_line"]
     if subprocess.run(build, cwd=ROOT, check=False).returncode:
         sys.exit("scripts/handbook: the programs could not be built")
     known, wrong, ran, left = options(), [], 0, 0
