@@ -11,7 +11,6 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 
@@ -39,18 +38,10 @@ class Stopped(Exception):
 
 def tools():
     """Installs the tools of requirements.txt, if that has not been done."""
-    wanted = (BOARD / "requirements.txt").read_text()
-    kept = TOOLS / "requirements.txt"
-    if kept.is_file() and kept.read_text() == wanted:
-        return
-    shutil.rmtree(TOOLS, ignore_errors=True)
+    pinned = ["--require-hashes", "--only-binary", ":all:", "-r", BOARD / "requirements.txt"]
     # What callers read of this program's output is no message.
-    if subprocess.run([ROOT / "scripts" / "venv", TOOLS, sys.executable], stdout=sys.stderr).returncode:
-        raise Stopped("no Python environment could be made for the tools of requirements.txt, as said above")
-    pip = [TOOLS / "bin" / "python", "-m", "pip", "install", "--quiet", "--require-hashes", "--only-binary", ":all:"]
-    if subprocess.run([*pip, "-r", BOARD / "requirements.txt"]).returncode:
+    if subprocess.run([ROOT / "scripts" / "venv", TOOLS, sys.executable, *pinned], stdout=sys.stderr).returncode:
         raise Stopped("the tools of requirements.txt could not be installed: is PyPI within reach, and this Python 3.10 or newer?")
-    kept.write_text(wanted)
 
 
 def run(tool, arguments, work):
