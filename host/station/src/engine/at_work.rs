@@ -288,7 +288,7 @@ impl AtWork {
     fn why_not(&mut self, lane: usize, of: &Accepted) -> Option<Said> {
         let PlanFile { plan, .. } = self.shared.settings.plans.get(of.plan)?;
         let asked = &mut self.lanes.get_mut(lane)?.asked;
-        let was_asked = asked.take().as_ref() == Some(&of.serial);
+        let was_answered = asked.is_answered(of, Instant::now());
         let folder = Folder::new(&self.shared.settings.data);
         let settings = &self.shared.settings;
         if let Some(why) = unsent::refuses(settings, &folder) {
@@ -296,9 +296,9 @@ impl AtWork {
         }
         match folder.again(plan, &of.serial, "scan it once more", settings.is_green_at_plant()) {
             Ok(None) => None,
-            Ok(Some(AgainError::Asked { .. })) if was_asked => None,
+            Ok(Some(AgainError::Asked { .. })) if was_answered => None,
             Ok(Some(error)) => {
-                *asked = matches!(error, AgainError::Asked { .. }).then(|| of.serial.clone());
+                asked.note(&error, of, Instant::now());
                 Some(Said::of(&error))
             }
             Err(error) => Some(Said::of(&error)),

@@ -1,5 +1,6 @@
 //! What the engine keeps of one lane.
 
+use super::asked::Asked;
 use super::hook_queue::HookQueue;
 use super::known::KnownOfLane;
 use super::lane_threads::StopAsked;
@@ -9,8 +10,7 @@ use crate::presence::Presence;
 pub(super) struct LaneWork {
     pub(super) presence: Presence,
     pub(super) stop: StopAsked,
-    /// The unit that passed already and that somebody was asked to scan once more.
-    pub(super) asked: Option<String>,
+    pub(super) asked: Asked,
     /// What is known of what it owes its shift.
     pub(super) known: KnownOfLane,
     /// The run that there was no thread to save.
@@ -24,7 +24,7 @@ impl LaneWork {
         Self {
             presence: Presence::default(),
             stop: StopAsked::default(),
-            asked: None,
+            asked: Asked::default(),
             known: KnownOfLane::NOTHING,
             unrecovered: None,
             hooks: HookQueue::new(),

@@ -7,6 +7,7 @@
 //!                     one thread, which owns the floor; it waits for its inbox, and for short queries of the store
 //! ```
 
+mod asked;
 mod at_work;
 mod figures;
 mod hook_queue;
