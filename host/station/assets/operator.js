@@ -210,8 +210,9 @@ addEventListener("submit", (event) => {
   const form = event.target;
   if (!form.closest("#station")) return;
   event.preventDefault();
-  if (form.id !== "hand") return post(form.getAttribute("action"), () => ({}), answer, UNPRESSED);
   const fields = new FormData(form);
+  // What the lane showed when the button was pressed.
+  if (form.id !== "hand") return post(form.getAttribute("action"), () => Object.fromEntries(fields), answer, UNPRESSED);
   if (fields.get("lane")) arms(fields.get("lane"));
   scan(fields.get("text"), "true");
   form.reset();

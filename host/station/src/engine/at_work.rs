@@ -66,8 +66,8 @@ impl AtWork {
                     let answer = in_time(until).and_then(|()| self.label(lane, &label, &operator));
                     self.answer(number, label, answer);
                 }
-                Input::Act { number, lane, act, operator, until } => {
-                    let answer = in_time(until).and_then(|()| self.floor.act(lane, act, &operator));
+                Input::Act { number, lane, act, of, operator, until } => {
+                    let answer = in_time(until).and_then(|()| self.floor.press(lane, act, &of, &operator));
                     self.answer(number, act.barcode(), answer);
                 }
                 Input::Heard { lane, heard } => self.heard(lane, heard),
@@ -284,7 +284,7 @@ impl AtWork {
     }
 
     /// Why this unit must not be tested now: too much is not at the plant yet, or it passed already. Some plans only
-    /// ask for its label once more then; if the next scan in the lane is of the same label, it is tested.
+    /// ask for its label once more then; if the next scan in the lane answers that, it is tested.
     fn why_not(&mut self, lane: usize, of: &Accepted) -> Option<Said> {
         let PlanFile { plan, .. } = self.shared.settings.plans.get(of.plan)?;
         let asked = &mut self.lanes.get_mut(lane)?.asked;

@@ -53,7 +53,7 @@ const SILENT: Duration = Duration::from_secs(5);
 enum Input {
     Scan { number: u64, text: String, operator: String },
     Label { number: u64, lane: Option<usize>, label: String, operator: String, until: Option<Instant> },
-    Act { number: u64, lane: usize, act: Act, operator: String, until: Option<Instant> },
+    Act { number: u64, lane: usize, act: Act, of: String, operator: String, until: Option<Instant> },
     Heard { lane: usize, heard: LaneEvent },
     Close(Option<StoppedBy>),
 }
@@ -149,10 +149,18 @@ impl Engine {
         self.put(Input::Label { number, lane, label, operator, until });
     }
 
-    /// Does with the lane at this index what `operator` wants, unless it is after `until`. What becomes of it is news,
-    /// as for a scan.
-    pub fn act(&self, number: u64, lane: usize, act: Act, operator: &str, until: Option<Instant>) {
-        self.put(Input::Act { number, lane, act, operator: operator.to_owned(), until });
+    /// Does with the lane at this index what `operator` wants who saw this run or serial number `of` in it, unless it is after
+    /// `until`. What becomes of it is news, as for a scan.
+    pub fn act(
+        &self,
+        number: u64,
+        (lane, of): (usize, &str),
+        act: Act,
+        operator: &str,
+        until: Option<Instant>,
+    ) {
+        let (of, operator) = (of.to_owned(), operator.to_owned());
+        self.put(Input::Act { number, lane, act, of, operator, until });
     }
 
     /// Takes the lane at this index out of service, because a process of an earlier run may still have its board.

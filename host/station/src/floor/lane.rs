@@ -116,6 +116,12 @@ impl Lane {
         }
     }
 
+    /// Whether it has something in hand that is neither the run nor the serial number `of`. A page that was drawn before the run was
+    /// in the store shows only its serial number.
+    pub(super) fn has_other_than(&self, of: &str) -> bool {
+        self.under_test().is_some_and(|has| has.serial != of && self.run() != Some(of))
+    }
+
     /// The plan and the serial number of the mock board, if that is what the lane has to test now.
     ///
     /// # Errors

@@ -231,7 +231,7 @@ impl Floor {
         }
     }
 
-    /// Does with a lane what `operator` asked for with a barcode or a button.
+    /// Does with a lane what `operator` asked for, whatever it has in hand.
     ///
     /// # Errors
     /// [`ScanError::Lane`] when it cannot be done now.
@@ -247,6 +247,23 @@ impl Floor {
             Act::In => Saying::PutBack { lane: name },
         };
         Ok(ScanOutcome { lane: Some(lane), effect, said: said.into() })
+    }
+
+    /// Does with a lane what `operator` asked for with a button of a page that showed this run or serial number `of` in it.
+    ///
+    /// # Errors
+    /// Like [`Self::act`], and [`ScanError::Late`] when an abort would end anything else.
+    pub fn press(
+        &mut self,
+        lane: usize,
+        act: Act,
+        of: &str,
+        operator: &str,
+    ) -> Result<ScanOutcome, ScanError> {
+        if act == Act::Abort && self.lane(lane)?.has_other_than(of) {
+            return Err(ScanError::Late);
+        }
+        self.act(lane, act, operator)
     }
 
     /// Takes what happened to a lane. Boards that come and go are [`Self::looked`] at.

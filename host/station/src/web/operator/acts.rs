@@ -58,6 +58,9 @@ pub(super) struct Pressed {
     /// Like that of a scan.
     #[serde(default)]
     beat: String,
+    /// The run that the page showed in the lane, or the serial number where it showed none.
+    #[serde(default)]
+    of: String,
 }
 
 /// The result of a scan, for the page that sent it.
@@ -272,7 +275,7 @@ async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
         .map_err(|error| Trouble::telling(&visit, StatusCode::NOT_FOUND, &Said::of(&error)))?;
     let late = |error| Trouble::new(&visit, StatusCode::CONFLICT, told(&visit, &error));
     let until = app.lanes(&visit)?.live.until(&pressed.beat).map_err(late)?;
-    let ask = |engine: &Engine, number| engine.act(number, place, act, visit.name(), until);
+    let ask = |engine: &Engine, number| engine.act(number, (place, &pressed.of), act, visit.name(), until);
     let became = asked(&app, &visit, ("lane", name, act.barcode()), ask).await?;
     match (visit.is_script, became.is_taken) {
         (true, is_taken) => Ok(json(&ScanReply {

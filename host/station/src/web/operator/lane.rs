@@ -207,6 +207,7 @@ fn acts(visit: &Visit, state: &LaneState) -> Markup {
             @let (path, name) = button(visit, *act);
             form.act method="post" action={ "/lanes/" (state.lane) "/" (path) } {
                 input type="hidden" name="csrf" value=(visit.csrf);
+                @if *act == Act::Abort { input type="hidden" name="of" value=[state.run.as_ref().or(state.serial.as_ref())]; }
                 button id={ (path) "-" (state.lane) } { (name) }
             }
         }

@@ -238,6 +238,27 @@ fn a_run_is_stopped_and_a_waiting_number_forgotten() {
     assert_eq!((words(&waits), forgotten.to_string()), (vec![Word::Ready], said));
 }
 
+/// An old page shows a run that is over, and a fresh one a run that ends while its button is pressed.
+#[test]
+fn a_button_aborts_what_its_page_showed_and_nothing_else() {
+    let mut floor = floor(&[SCAN], false);
+    plug(&mut floor, 0);
+    let press = |floor: &mut Floor, of: &str| {
+        floor.press(0, Act::Abort, of, WEBER).map(|did| did.effect).map_err(Box::new)
+    };
+    assert!(matches!(*press(&mut floor, "run 0").unwrap_err(), ScanError::Lane(_)), "nothing is under way");
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    assert_eq!(press(&mut floor, &serial(0)), Ok(Some(Effect::Stop)), "it is not in the store yet");
+    floor.happened(0, Event::Begun { run: "run 1".to_owned() });
+    for other in ["run 0", "", &serial(1)] {
+        assert_eq!(press(&mut floor, other), Err(Box::new(ScanError::Late)), "{other}");
+    }
+    for shown in ["run 1", &serial(0)] {
+        assert_eq!(press(&mut floor, shown), Ok(Some(Effect::Stop)), "{shown}");
+    }
+    assert_eq!(floor.scan("HR:ABORT", WEBER, at(0)).unwrap().effect, Some(Effect::Stop));
+}
+
 #[test]
 fn a_product_chooses_its_plan() {
     let mut floor = floor(&[SCAN], false);

@@ -6,7 +6,7 @@ use std::net::TcpStream;
 
 use serde_json::Value;
 
-use crate::common::{HANG, NO_AUDIT, plant_settings, until};
+use crate::common::{HANG, plant_settings, until};
 use crate::pages::station::{SERIALS, Serving, Station};
 
 /// The page's stream of news.
@@ -341,59 +341,7 @@ fn what_comes_long_after_the_beat_that_its_page_heard_is_not_done() {
     until("a board that is seen", || post("/scan", SERIALS[0], &beat())["is_taken"] == true);
 }
 
-/// A station whose lane has a serial number, and is started by `start`.
-fn started_by(start: &str) -> (Station, Serving) {
-    let station = Station::private(1);
-    let port = station.path("port");
-    let started = format!("board = \"serial:{}\"\nstart = [\"{start}\"]", port.display());
-    let station = station.where_instead("station.toml", "board = \"mock,serial=1\"", &started);
-    let serving = station.serve();
-    fs::write(&port, "").unwrap();
-    seen(&serving, "lane ready");
-    serving.here().post("/scan", &[("text", SERIALS[0])]).send();
-    (station, serving)
-}
-
 /// The page of the lanes, as soon as it contains `state`.
-fn seen(serving: &Serving, state: &str) -> String {
+pub(super) fn seen(serving: &Serving, state: &str) -> String {
     serving.here().get("/").until(state)
-}
-
-/// As on a full disk.
-#[test]
-fn an_abort_that_cannot_be_entered_is_done_all_the_same() {
-    let (station, serving) = started_by("button");
-    let lane = |act: &str| serving.here().post(&format!("/lanes/1/{act}"), &[]).send().status;
-    let scan = |text: &str| serving.here().post("/scan", &[("text", text)]).send().status;
-    let database = rusqlite::Connection::open(station.path("data").join("station.db")).unwrap();
-    seen(&serving, "lane waiting");
-    database.execute_batch(NO_AUDIT).unwrap();
-    assert_eq!((lane("start"), scan("HR:START")), (503, 503), "what else there is");
-    assert_eq!(lane("abort"), 303);
-    seen(&serving, "lane ready");
-    database.execute_batch("DROP TRIGGER full").unwrap();
-    scan(SERIALS[0]);
-    seen(&serving, "lane waiting");
-    database.execute_batch(NO_AUDIT).unwrap();
-    assert_eq!(scan("HR:ABORT"), 200);
-    seen(&serving, "lane ready");
-    database.execute_batch("DROP TRIGGER full").unwrap();
-    assert_eq!(lane("abort"), 409, "nothing is under way");
-    let acts = "SELECT act || ' ' || detail FROM audit ORDER BY id";
-    let scan = format!("scan {}", SERIALS[0]);
-    assert_eq!(station.query(acts), [scan.as_str(), &scan, "lane HR:ABORT"], "what could be entered");
-}
-
-/// Everything that the page offers is also accepted.
-#[test]
-fn a_lane_that_waits_says_what_starts_it() {
-    for (start, does, has_button) in
-        [("button", "press start", true), ("presence", "unplug the board, and plug it in again", false)]
-    {
-        let (_station, serving) = started_by(start);
-        let page = seen(&serving, "lane waiting");
-        assert!(page.contains(&format!("<p class=\"does\">{does}</p>")), "{page}");
-        assert_eq!(page.contains("/lanes/1/start"), has_button, "{page}");
-        assert!(page.contains("/lanes/1/abort") && !page.contains("/lanes/1/out"), "{page}");
-    }
 }

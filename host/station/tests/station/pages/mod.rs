@@ -11,6 +11,7 @@ pub(crate) mod http;
 mod lanes;
 mod languages;
 mod places;
+mod pressed;
 mod prompt;
 mod secrets;
 mod slow;
