@@ -28,7 +28,7 @@ use crate::outbox::{self, Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Recovered, Saved};
 use crate::said::Saying;
 use crate::settings::{PlanFile, PlantSettings, Settings};
-use crate::store::{Folder, SharedStore, Store};
+use crate::store::{Folder, Introduction, SharedStore, Store, Told};
 
 /// How often signals are checked for.
 const LOOK: Duration = Duration::from_millis(100);
@@ -200,9 +200,9 @@ pub(super) struct Sending {
 }
 
 impl Sending {
-    /// Begins to send what is in `store` to all sinks of these settings.
-    pub(super) fn begin(settings: &Settings, store: SharedStore) -> Result<Self, Failure> {
-        let sinks = store.with(|store| sinks(settings, store))?;
+    /// Begins to send what is in `store` to all sinks of these settings; `told` is what this program tells the plant of itself.
+    pub(super) fn begin(settings: &Settings, store: SharedStore, told: &Told) -> Result<Self, Failure> {
+        let sinks = store.with(|store| sinks(settings, store, told))?;
         Self::to(sinks, store)
     }
 
@@ -226,10 +226,14 @@ impl Drop for Sending {
 }
 
 /// All sinks to which the station sends what it keeps.
-pub(super) fn sinks(settings: &Settings, store: &mut Store) -> Result<Vec<Box<dyn Sink>>, Failure> {
+pub(super) fn sinks(
+    settings: &Settings,
+    store: &mut Store,
+    told: &Told,
+) -> Result<Vec<Box<dyn Sink>>, Failure> {
     let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
     if let Some(plant) = &settings.plant {
-        let station = settings.introduction(store.origin()?);
+        let station = Introduction { told: told.clone(), ..settings.introduction(store.origin()?) };
         sinks.push(Box::new(PlantSink::new(plant.address()?, station, store.folder().clone())));
     }
     for sink in &settings.sinks {

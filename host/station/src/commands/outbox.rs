@@ -12,7 +12,7 @@ use crate::console;
 use crate::exit::Exit;
 use crate::outbox::all;
 use crate::settings::Settings;
-use crate::store::{DEAD_SHOWN, Dead, Folder, SharedStore, Snapshot, Store, Unsent};
+use crate::store::{DEAD_SHOWN, Dead, Folder, SharedStore, Snapshot, Store, Told, Unsent};
 
 /// See what is still to be sent on, send it, or have it tried again
 #[derive(Debug, Args)]
@@ -151,7 +151,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
 
 /// Sends to every sink what it does not have yet, and prints what is left.
 fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
-    let mut sinks = sinks(settings, &mut store)?;
+    let mut sinks = sinks(settings, &mut store, &Told::default())?;
     if sinks.is_empty() {
         return Err(Failure::call(NoSink));
     }

@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     // The plant lends a board again as soon as it has its run, so nothing is sent before the board is out.
     if stop().is_none() {
         out?;
-        let sending = Sending::begin(&settings, store)?;
+        let sending = Sending::begin(&settings, store, &introduction.told)?;
         let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
         // No job is over before the plant has its run, which nobody would send.
         let stop = || ended_or(&stop, sending.refuse_ended().is_err());

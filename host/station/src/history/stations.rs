@@ -2,10 +2,7 @@
 
 use serde::Serialize;
 
-use crate::store::{Snapshot, StoreError, statements};
-
-/// How long a station may be silent before it is taken to be away, in milliseconds: it reports every half minute.
-const SILENT_MS: i64 = 120_000;
+use crate::store::{SILENT_MS, Snapshot, StoreError, statements};
 
 /// A station.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

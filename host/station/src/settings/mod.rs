@@ -25,7 +25,7 @@ use crate::input_error::{Fault, InputError, text_of};
 use crate::labgrid::LaneBoard;
 use crate::plan::Plan;
 use crate::published::PublicKey;
-use crate::store::{Introduction, SINK_OF_PLANT};
+use crate::store::{Introduction, SINK_OF_PLANT, Told};
 use crate::web::Address;
 
 /// The version of the settings' own format.
@@ -221,7 +221,8 @@ impl Settings {
             |PlanFile { plan, .. }: &PlanFile| format!("{} {} {}", plan.product, plan.name, plan.version);
         let plans = self.plans.iter().map(plan).collect::<Vec<_>>().join("\n");
         let program = halfrow::VERSION.to_owned();
-        Introduction { name: self.name.clone(), origin, program, plans, unsent: 0, dead: 0 }
+        let (name, told) = (self.name.clone(), Told::default());
+        Introduction { name, origin, program, plans, unsent: 0, dead: 0, told }
     }
 
     /// The lanes as they are before any board comes.

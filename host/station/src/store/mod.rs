@@ -54,9 +54,11 @@ pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, 
 pub(crate) use outbox::{Backlog, DEAD_SHOWN, FIRST_WAIT_MS, LONGEST_WAIT_MS};
 pub use plant::{
     Claim, Introduction, Job, JobState, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError,
-    PlantLink, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
+    PlantLink, SharedBoard, Told, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
 };
-pub(crate) use plant::{JobsInState, KeptRun, LEASE_MS, PlantPool, open_jobs, publications, waiters};
+pub(crate) use plant::{
+    JobsInState, KeptRun, LEASE_MS, PlantPool, SILENT_MS, open_jobs, publications, waiters,
+};
 pub(crate) use reason::MOST_REASON;
 pub use reason::{Reason, ReasonError};
 pub use retention::Removed;

@@ -26,6 +26,9 @@ pub(crate) use plans::publications;
 pub(crate) use pool::PlantPool;
 
 use std::path::PathBuf;
+use std::sync::Arc;
+
+use parking_lot::Mutex;
 
 use super::database::{Database, DatabaseError, values};
 use super::{By, Parcel, StoreError, migrations, statements as sql};
@@ -72,10 +75,11 @@ pub enum PlantError {
         /// What was sent.
         subject: String,
     },
-    /// Another station of the plant has this station's name.
+    /// Another station of the plant has this station's name, perhaps with a copy of its folder.
     #[error(
-        "another station of this plant is called {name}; nothing is sent until one of the two has another name in its settings, or \
-         `halfrow-station plant forget {name}` says that this folder is the station's new one"
+        "another station of this plant is called {name}; nothing is sent until one of the two has another name in its settings, no \
+         copy of this folder is at work any more, or `halfrow-station plant forget {name}` says that this folder is the station's \
+         new one"
     )]
     OtherStation {
         /// The name.
@@ -123,8 +127,16 @@ impl PlantError {
     }
 }
 
+/// How long a station may be silent before it is taken to be away, in milliseconds: it reports every half minute.
+pub(crate) const SILENT_MS: i64 = 120_000;
+
+/// When this program told the plant of its station last, in milliseconds since 1970, UTC, by the plant's clock; `None` if that is
+/// not known. Clones share it.
+#[derive(Clone, Debug, Default)]
+pub struct Told(Arc<Mutex<Option<i64>>>);
+
 /// What a station tells the plant of itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Introduction {
     /// The station's name.
     pub name: String,
@@ -138,6 +150,8 @@ pub struct Introduction {
     pub unsent: u32,
     /// Those of them that wait for a person.
     pub dead: u32,
+    /// When the plant was told so last.
+    pub told: Told,
 }
 
 /// A connection to a plant.
@@ -209,13 +223,19 @@ impl Plant {
     /// Enters that this station is at work. Returns the plant's clock.
     ///
     /// # Errors
-    /// [`PlantError::OtherStation`] when another station has its name.
+    /// [`PlantError::OtherStation`] when another station has its name, or a copy of its folder is at work, too: somebody else has told
+    /// the plant of it since this program did.
     pub fn see(&mut self, station: &Introduction) -> Result<HeardClock, PlantError> {
-        let Introduction { name, origin, program, plans, unsent, dead } = station;
-        let seen_ms = self.carry_out("to hear of a station", |to| {
-            let of = values![name, origin, program, plans, *unsent, *dead];
+        let Introduction { name, origin, program, plans, unsent, dead, told } = station;
+        // Its clones must not tell the plant meanwhile, or that would look like a copy.
+        let mut told = told.0.lock();
+        // Should there be no answer, the plant may have been told all the same.
+        let last_ms = told.take().unwrap_or(i64::MAX);
+        let seen_ms: Option<i64> = self.carry_out("to hear of a station", |to| {
+            let of = values![name, origin, program, plans, *unsent, *dead, last_ms, SILENT_MS];
             to.first(sql::SEEN, of, |row| row.get(0))
         })?;
+        *told = Some(seen_ms.unwrap_or(last_ms));
         seen_ms.map(HeardClock::shows).ok_or_else(|| PlantError::OtherStation { name: name.clone() })
     }
 

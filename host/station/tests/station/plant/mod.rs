@@ -22,5 +22,6 @@ mod station_named;
 mod tables;
 mod tampered;
 mod texts;
+mod twice;
 mod waiting;
 pub(crate) mod way;

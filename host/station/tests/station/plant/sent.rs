@@ -1,7 +1,7 @@
 //! What arrives at the plant is what the station has.
 
 use halfrow_station::outbox::{PlantSink, Round, Standing, round};
-use halfrow_station::store::{Introduction, Plant, PlantAddress, SINK_OF_PLANT, SharedStore, Store};
+use halfrow_station::store::{Introduction, Plant, PlantAddress, SINK_OF_PLANT, SharedStore, Store, Told};
 
 use super::rights::as_station;
 use super::server::Server;
@@ -40,7 +40,8 @@ pub(super) fn sink(name: &str, store: &mut Store, address: PlantAddress) -> Plan
 /// What a station of this name says of itself.
 pub(crate) fn introduction(name: &str, origin: String) -> Introduction {
     let plans = "CAM-T final 1\nCAM-T intake 1".to_owned();
-    Introduction { name: name.to_owned(), origin, program: "halfrow 0".to_owned(), plans, unsent: 0, dead: 0 }
+    let (name, program, told) = (name.to_owned(), "halfrow 0".to_owned(), Told::default());
+    Introduction { name, origin, program, plans, unsent: 0, dead: 0, told }
 }
 
 /// Makes the station forget what it has sent.
