@@ -1,5 +1,6 @@
 //! The station's key, under which badges are kept and forms are marked.
 
+use std::io;
 use std::path::Path;
 
 use hmac::{Hmac, KeyInit as _, Mac as _};
@@ -26,7 +27,11 @@ impl Key {
     /// The key in the file `path`; if there is no file, a key is drawn and written to it.
     pub(crate) fn load(path: &Path) -> Result<Self, SecretError> {
         if !path.exists() {
-            return Self::draw(path);
+            match Self::draw(path) {
+                // Another program was quicker; its key is there as a whole.
+                Err(SecretError::File { source, .. }) if source.kind() == io::ErrorKind::AlreadyExists => {}
+                drawn => return drawn,
+            }
         }
         let text = secret::own(path)?;
         let wrong = || SecretError::Wrong {

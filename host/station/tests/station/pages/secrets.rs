@@ -30,6 +30,27 @@ fn tokens_that_are_added_and_removed_at_once_are_all_as_they_were_told_to_be() {
     assert_eq!(at_once("remove").trim(), "");
 }
 
+/// As when a script adds people and starts the pages of a new station.
+#[test]
+fn programs_that_are_the_first_in_a_folder_at_once_have_one_key() {
+    let station = Station::public(1);
+    let key = station.path("data").join("station.key");
+    for round in 0..4 {
+        fs::remove_file(&key).unwrap();
+        let added = thread::scope(|scope| {
+            let add = |number| {
+                let name = format!("mes-{round}-{number}");
+                scope.spawn(|| (station.token(&["add", &name]), name))
+            };
+            let adding: Vec<_> = (0..8).map(add).collect();
+            adding.into_iter().map(|one| one.join().unwrap()).collect::<Vec<_>>()
+        });
+        for (did, name) in added {
+            assert!(did.status.success(), "{name}: {}", String::from_utf8_lossy(&did.stderr));
+        }
+    }
+}
+
 /// It is not as if there were no tokens, or nobody.
 #[test]
 fn a_file_of_tokens_that_cannot_be_reached_is_no_empty_one() {
