@@ -38,6 +38,17 @@ pub struct Conclusion {
 }
 
 impl Conclusion {
+    /// Whether somebody else ended the run or had its board, which says nothing of what it was to judge.
+    pub(crate) fn is_from_outside(&self) -> bool {
+        self.is_busy()
+            || matches!(Exit::of(self.exit_code), Some(Exit::HungUp | Exit::Interrupted | Exit::Terminated))
+    }
+
+    /// Whether somebody else had the board.
+    pub(crate) fn is_busy(&self) -> bool {
+        Exit::of(self.exit_code) == Some(Exit::Busy)
+    }
+
     /// The conclusion of a run whose plan has `planned` steps: the worst result of any step's last try or of any
     /// measurement in `run`, where ERROR is worse than FAIL; PASS only if every step passed. `lane` says why steps are
     /// missing, if the lane did not reach the end of the plan by itself.

@@ -92,7 +92,7 @@ impl Holding {
         let known = Arc::new(Known::of(held.lease()));
         let noted = Arc::clone(&known);
         let renew = move || {
-            if renew(&plant.hasty(), &held, &noted, &stopped) {
+            if renew(&plant.hasty(), &held, &noted, &stopped) && !noted.runs_out.load(Ordering::Relaxed) {
                 give_back(&plant, &held);
             }
         };
@@ -121,6 +121,11 @@ impl Holding {
 
     /// Gives the board back.
     pub fn end(self) {}
+
+    /// Holds the board until its lease runs out, so that nobody gets it before that.
+    pub(super) fn run_out(self) {
+        self.known.runs_out.store(true, Ordering::Relaxed);
+    }
 }
 
 impl Drop for Holding {
@@ -138,6 +143,8 @@ impl Drop for Holding {
 struct Known {
     board: String,
     is_taken: AtomicBool,
+    /// Whether it is not given back.
+    runs_out: AtomicBool,
     renewed: Mutex<Renewed>,
 }
 
@@ -151,7 +158,8 @@ struct Renewed {
 impl Known {
     fn of(Lease { board, since, .. }: &Lease) -> Self {
         let renewed = Mutex::new(Renewed { since: *since, said: "it does not answer".to_owned() });
-        Self { board: board.clone(), is_taken: AtomicBool::new(false), renewed }
+        let [is_taken, runs_out] = [false; 2].map(AtomicBool::new);
+        Self { board: board.clone(), is_taken, runs_out, renewed }
     }
 
     fn lost(&self) -> Option<Lost> {
@@ -226,7 +234,8 @@ mod tests {
     fn renewed(ago: Duration) -> Known {
         let since = Moment::ago(ago);
         let renewed = Mutex::new(Renewed { since, said: "no route to host".to_owned() });
-        Known { board: "shelf-1".to_owned(), is_taken: AtomicBool::new(false), renewed }
+        let [is_taken, runs_out] = [false; 2].map(AtomicBool::new);
+        Known { board: "shelf-1".to_owned(), is_taken, runs_out, renewed }
     }
 
     /// The thread that renews it may be stuck in a question, and so may not note that it is lost.

@@ -154,7 +154,16 @@ impl Work<'_> {
         let is_superseded = self.is_superseded(&claim, &saved.record, counts);
         let is_sent = counts.is_some() || matches!(sent, Sent::Yes);
         let refused = if let Sent::Refused(said) = sent { Some(said.to_string()) } else { None };
-        holding.end();
+        let ended = &saved.record.conclusion;
+        if !is_sent && ended.is_from_outside() && stop().is_some() {
+            free_later(&claim.job, self.plant.ask(|plant| plant.decline(&claim, Some(&ended.headline))));
+        }
+        // Another host uses it, and would turn the next run away as well.
+        if ended.is_busy() {
+            holding.run_out();
+        } else {
+            holding.end();
+        }
         Ok(JobResult { claim, is_sent, refused, counts, is_superseded, not_out, saved })
     }
 

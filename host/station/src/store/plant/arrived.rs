@@ -61,7 +61,10 @@ fn settles_job(to: &mut dyn Database, record: &Record) -> Result<bool, DatabaseE
     let Some(JobClaim { id, fence }) = &record.run.job else { return Ok(true) };
     let ended = &record.conclusion;
     let changed = match ended.verdict {
-        Verdict::Error => to.execute(sql::JOB_BACK, values![&ended.headline, *fence, id])?,
+        Verdict::Error => {
+            let is_free = i64::from(ended.is_from_outside());
+            to.execute(sql::JOB_BACK, values![&ended.headline, *fence, is_free, id])?
+        }
         Verdict::Pass | Verdict::Fail => to.execute(sql::JOB_DONE, values![&record.run.id, *fence, id])?,
     };
     // A job that is not here, because it is another plant's or was lost, supersedes nothing; nor does one that waits for its next

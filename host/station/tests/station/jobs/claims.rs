@@ -25,7 +25,7 @@ fn run_of_unit(serial: &str, number: u32, end: End) -> Parcel {
 }
 
 /// Like [`run_of_unit`], for a claim.
-fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
+pub(super) fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
     let parcel = run_of_unit(claim.serial(), number, end);
     let Parcel::Run { mut record, .. } = parcel else { panic!("it is a run") };
     record.run.job = Some(JobClaim { id: claim.job.clone(), fence: claim.fence });

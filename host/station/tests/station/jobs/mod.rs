@@ -7,6 +7,7 @@ pub(crate) mod claims;
 mod clock_set;
 mod commands;
 pub(crate) mod disk;
+mod from_outside;
 mod rate;
 mod sent;
 mod shift;

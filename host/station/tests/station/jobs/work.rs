@@ -167,6 +167,23 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
     assert!(refused.code == Some(2) && refused.complained.contains("give 1 to 64"), "{refused:?}");
 }
 
+/// The plant is there, and does not take the run: as if it could not be sent any more.
+#[test]
+fn a_station_that_is_told_to_end_gives_the_job_of_its_run_back() {
+    let (server, mut plant) = shared(0);
+    plant.share(&endless(0), "engel").unwrap();
+    add(&mut plant, 1);
+    server.never_holds("run");
+    let (folder, mut command) = work(&server, "12");
+    let worker = command.spawn().unwrap();
+    until_begun(&server, folder.path());
+    signal(worker.id(), Signal::SIGTERM);
+    let did = Did::from(worker.wait_with_output().unwrap());
+    assert_eq!(did.code, Some(143), "{did:?}");
+    assert_eq!(server.rows("SELECT state, attempts, holder FROM job"), [["waiting", "0", "NULL"]], "{did:?}");
+    assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
+}
+
 /// It would take fewer at a time for as long as it runs, and nobody would know.
 #[test]
 fn a_station_without_a_thread_for_each_of_its_jobs_ends_and_says_so() {
