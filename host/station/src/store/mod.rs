@@ -154,7 +154,8 @@ impl Store {
         writer.leave_log(log != Log::None);
         if log == Log::Unknown {
             tracing::warn!(
-                "station.db-wal was left by a program that was killed; all of station.db is looked at first, which takes a while"
+                "station.db-wal was left by a program that was killed, or ended while another one read station.db; all of station.db is \
+                 looked at first, which takes a while"
             );
             generation::refuse_damaged(folder, &mut *writer)?;
         }
@@ -196,7 +197,9 @@ impl Store {
         let folded = self.writer.one("PRAGMA wal_checkpoint(TRUNCATE)", &[], |row| row.get::<i64>(0));
         match folded {
             Ok(0) => {}
-            Ok(_) => tracing::info!("the write-ahead log stays beside the database, which somebody reads"),
+            Ok(_) => tracing::warn!(
+                "the write-ahead log stays beside the database, which somebody reads; the next start may look at all of the database"
+            ),
             Err(error) => tracing::warn!("the write-ahead log stays beside the database: {error}"),
         }
     }

@@ -6,6 +6,7 @@ use std::process::Command;
 use halfrow_station::record::Record;
 use halfrow_station::store::{Store, StoreError};
 use rusqlite::Connection;
+use rusqlite::config::DbConfig;
 
 use super::bench::{PLAN, Station, program};
 use crate::history::made::{End, Made, Run, record};
@@ -20,6 +21,24 @@ fn only_one_program_writes() {
     assert!(matches!(Store::open(&station.store()), Err(StoreError::InUse { .. })));
     drop(held);
     assert_eq!(station.run("CAT00001", "mock").code, Some(0));
+}
+
+/// Nobody killed it; a user would look for a crash.
+#[test]
+fn a_log_that_stayed_because_somebody_read_is_not_blamed_on_a_kill_alone() {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock");
+    let reader = Connection::open(station.data().join("station.db")).unwrap();
+    // As those of the program, which only read.
+    reader.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true).unwrap();
+    reader.execute_batch("BEGIN; SELECT count(*) FROM run").unwrap();
+    let did = station.run("CAT00002", "mock");
+    assert_eq!(did.code, Some(0), "{did:?}");
+    drop(reader);
+    let did = station.run("CAT00003", "mock");
+    assert_eq!(did.code, Some(0), "{did:?}");
+    let complained = &did.complained;
+    assert!(complained.contains("or ended while another one read station.db"), "{complained}");
 }
 
 /// The system calls of a run, in order: the record and its name are on the disk before the database's log mentions it, and the
