@@ -128,7 +128,7 @@ mod tests {
     use super::*;
     use crate::engine::tests::{station, stopped};
     use crate::outbox::{Faulty, SendingEnded};
-    use crate::store::{Deed, Folder, Store};
+    use crate::store::{Folder, Store};
 
     #[test]
     fn systemd_is_not_told_that_an_engine_works_that_does_not() {
@@ -154,8 +154,6 @@ mod tests {
         let app = App::new(settings, Arc::clone(&engine), access, Vec::new()).unwrap();
         let server = Server::start(&app, Server::listen("127.0.0.1:0".parse().unwrap()).unwrap()).unwrap();
         let sending = Sending::to(vec![Box::new(Faulty)], engine.store()).unwrap();
-        let deed = Deed { operator: "weber", act: "scan", subject: "1", detail: "" };
-        engine.store().with(|store| store.note(deed)).unwrap();
         let (told, ended) = mpsc::channel();
         let worked = Arc::clone(&engine);
         thread::spawn(move || {

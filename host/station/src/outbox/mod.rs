@@ -30,6 +30,7 @@ pub(crate) use threads::tests::Faulty;
 pub use threads::{Outbox, OutboxError};
 
 use crate::clock;
+use crate::guard::guarded;
 use crate::said::Said;
 use crate::store::{
     Backlog, Entry, Folder, LONGEST_WAIT_MS, Parcel, SharedStore, Snapshot, StoreError, Tried,
@@ -144,7 +145,7 @@ fn given(
     let keep = |name: &str, tried: &[_]| store.with(|store| store.tried(name, tried, clock::now_ms()));
     for entry in due {
         let taken = match folder.parcel(&entry) {
-            Ok(parcel) => sink.take(&parcel),
+            Ok(parcel) => taken(sink, &parcel),
             Err(error) => Err(Undelivered::NotNow(Said::of(&error))),
         };
         round.sent += usize::from(taken.is_ok());
@@ -168,6 +169,15 @@ fn given(
         keep(sink.name(), &tried)?;
     }
     Ok(round)
+}
+
+/// What a sink makes of a parcel. A fault of the program's own is that of this one parcel: lanes go on, and other parcels are sent.
+fn taken(sink: &mut dyn Sink, parcel: &Parcel) -> Result<(), Undelivered> {
+    guarded(|| sink.take(parcel)).unwrap_or_else(|fault| {
+        // Its connection may be in any state.
+        sink.rest();
+        Err(Undelivered::NotNow(Said::of(&fault)))
+    })
 }
 
 fn became(entry: &Entry, taken: Result<(), Undelivered>) -> Tried {
@@ -316,6 +326,37 @@ mod tests {
         let mut sink = Listening(None);
         beat(&store(&Folder::new(place.path())), &mut sink, &mut Standing::default());
         assert_eq!(sink.0, Some((3, 1)));
+    }
+
+    /// A sink with a fault of the program's own, which the first parcel brings out.
+    struct Stumbling {
+        has_stumbled: bool,
+        has_rested: bool,
+    }
+
+    impl Sink for Stumbling {
+        fn name(&self) -> &str {
+            "mes"
+        }
+        fn take(&mut self, _: &Parcel) -> Result<(), Undelivered> {
+            assert!(std::mem::replace(&mut self.has_stumbled, true), "a fault of the program's own");
+            Ok(())
+        }
+        fn rest(&mut self) {
+            self.has_rested = true;
+        }
+    }
+
+    #[test]
+    fn a_parcel_that_brings_out_a_fault_keeps_no_other_from_being_sent() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::new(place.path());
+        let store = store(&folder);
+        let mut sink = Stumbling { has_stumbled: false, has_rested: false };
+        let round = round(&store, &mut sink, &mut Standing::default()).unwrap();
+        assert_eq!((round, sink.has_rested), (Round { sent: 1, failed: 1, is_away: false }, true));
+        let [left] = &Snapshot::take(&folder).unwrap().unsent().unwrap()[..] else { panic!("one waits") };
+        assert_eq!(left.said.as_ref().map(|said| &*said.code), Some("program-failed"));
     }
 
     /// The plant would show that nothing waits just when the store is in trouble.

@@ -230,10 +230,8 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn fail(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
         let Claim { job, fence, .. } = claim;
-        self.change("to take a job back", |to| {
-            to.execute(sql::JOB_BACK, values![said, *fence, 0_i64, job])
-        })
-        .map(drop)
+        self.change("to take a job back", |to| to.execute(sql::JOB_BACK, values![said, *fence, 0_i64, job]))
+            .map(drop)
     }
 
     /// Why no job may have the unit of this serial number judged: it passed, and the plan does not let it be judged again. A plan
