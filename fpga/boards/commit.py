@@ -27,10 +27,15 @@ def git(*arguments):
     return said(*arguments) if said("rev-parse", "--show-prefix") == "" else None
 
 
+def archived():
+    """All forty digits as the archive of the sources has them, or None in a repository."""
+    found = re.match("[0-9a-f]{40}$", ARCHIVED.read_text()) if ARCHIVED.exists() else None
+    return found and found[0]
+
+
 def whole():
     """All forty digits."""
-    archived = re.match("[0-9a-f]{40}$", ARCHIVED.read_text()) if ARCHIVED.exists() else None
-    return archived[0] if archived else git("rev-parse", "HEAD") or NONE
+    return archived() or git("rev-parse", "HEAD") or NONE
 
 
 def start():
@@ -39,7 +44,10 @@ def start():
 
 
 def modified(*but):
-    """Whether the folder `fpga`, without these files, differs from the commit. True also if git cannot tell."""
+    """Whether the folder `fpga`, without these files, differs from the commit. True also if git cannot tell; an archive is taken as it
+    was given away."""
+    if archived():
+        return False
     excluded = (f":!{path.relative_to(FPGA.parent)}" for path in but)
     return git("status", "--porcelain", "--", FPGA.name, *excluded) != ""
 
