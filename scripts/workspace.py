@@ -21,7 +21,7 @@ def built(*how):
 
 def program(package):
     """Builds the optimised program of a package, and returns its path."""
-    build = ["cargo", "build", "--release", "--locked", "--package", package, "--message-format=json"]
+    build = ["cargo", "build", "--release", "--locked", "--package", package, "--message-format=json-render-diagnostics"]
     messages = subprocess.run(build, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     if messages.returncode:
         sys.exit(f"{sys.argv[0]}: {package} could not be built, as said above")
