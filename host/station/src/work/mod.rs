@@ -156,7 +156,10 @@ impl Work<'_> {
         let refused = if let Sent::Refused(said) = sent { Some(said.to_string()) } else { None };
         let ended = &saved.record.conclusion;
         if !is_sent && ended.is_from_outside() && stop().is_some() {
-            free_later(&claim.job, self.plant.ask(|plant| plant.decline(&claim, Some(&ended.headline))));
+            free_later(
+                &claim.job,
+                self.plant.ask(|plant| plant.give_back_job(&claim, Some(&ended.headline))),
+            );
         }
         // Another host uses it, and would turn the next run away as well.
         if ended.is_busy() {

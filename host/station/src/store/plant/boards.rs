@@ -192,7 +192,7 @@ impl Plant {
     /// # Errors
     /// Like [`Self::share`].
     pub fn leave(&mut self, waiter: &Waiter) -> Result<(), StoreError> {
-        self.change("to forget who waits", |to| to.execute(sql::FORGET_WAITERS, values![&waiter.id]))
+        self.carry_out("to forget who waits", |to| to.execute(sql::FORGET_WAITERS, values![&waiter.id]))
             .map(drop)
     }
 
@@ -202,7 +202,7 @@ impl Plant {
     /// Like [`Self::share`].
     pub fn renew(&mut self, lease: &Lease) -> Result<bool, StoreError> {
         let Lease { board, holder, fence, .. } = lease;
-        let renewed = self.change("to let a board be held", |to| {
+        let renewed = self.carry_out("to let a board be held", |to| {
             to.execute(sql::RENEW_BOARD, values![LEASE_MS, board, holder, *fence])
         })?;
         Ok(renewed == 1)
@@ -216,7 +216,7 @@ impl Plant {
         let Lease { board, holder, fence, .. } = lease;
         let back =
             |to: &mut dyn Database| to.execute(sql::RETURN_BOARD, values![board, holder, *fence]).map(drop);
-        self.change("to take a board back", back)
+        self.carry_out("to take a board back", back)
     }
 }
 

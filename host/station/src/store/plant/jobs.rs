@@ -206,7 +206,7 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn renew_claim(&mut self, claim: &Claim) -> Result<bool, StoreError> {
         let Claim { job, fence, lease, .. } = claim;
-        let renewed = self.change("to let a job be held", |to| {
+        let renewed = self.carry_out("to let a job be held", |to| {
             to.execute(sql::RENEW_JOB, values![LEASE_MS, job, &lease.holder, *fence])
         })?;
         Ok(renewed == 1 && self.renew(lease)?)
@@ -217,11 +217,17 @@ impl Plant {
     /// # Errors
     /// Like [`Self::add_jobs`].
     pub fn decline(&mut self, claim: &Claim, said: Option<&str>) -> Result<(), StoreError> {
+        self.give_back_job(claim, said)?;
+        self.give_back(&claim.lease)
+    }
+
+    /// The same without its board.
+    pub(crate) fn give_back_job(&mut self, claim: &Claim, said: Option<&str>) -> Result<(), StoreError> {
         let Claim { job, fence, lease, .. } = claim;
-        self.change("to take a job back", |to| {
+        self.carry_out("to take a job back", |to| {
             to.execute(sql::RETURN_JOB, values![said, job, &lease.holder, *fence])
-        })?;
-        self.give_back(lease)
+        })
+        .map(drop)
     }
 
     /// Gives back a job that came to no run, for this reason. A job that was claimed five times is dead.
@@ -230,8 +236,10 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn fail(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
         let Claim { job, fence, .. } = claim;
-        self.change("to take a job back", |to| to.execute(sql::JOB_BACK, values![said, *fence, 0_i64, job]))
-            .map(drop)
+        self.carry_out("to take a job back", |to| {
+            to.execute(sql::JOB_BACK, values![said, *fence, 0_i64, job])
+        })
+        .map(drop)
     }
 
     /// Why no job may have the unit of this serial number judged: it passed, and the plan does not let it be judged again. A plan
@@ -254,7 +262,7 @@ impl Plant {
     /// Like [`Self::add_jobs`].
     pub fn refuse(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
         let Claim { job, fence, .. } = claim;
-        self.change("to end a job", |to| to.execute(sql::REFUSE_JOB, values![said, job, *fence])).map(drop)
+        self.carry_out("to end a job", |to| to.execute(sql::REFUSE_JOB, values![said, job, *fence])).map(drop)
     }
 
     /// Whether a run counts; none if it is not there.

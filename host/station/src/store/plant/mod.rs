@@ -316,7 +316,7 @@ impl Plant {
     }
 
     /// Changes what the plant has, in a transaction that checks the version of the tables: they may have been upgraded since the
-    /// connection was made, and this program does not know what belongs in others.
+    /// connection was made, and this program does not know what belongs in others. What it holds it may keep, and give back.
     fn change<T>(
         &mut self,
         doing: &'static str,

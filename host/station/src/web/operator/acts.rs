@@ -237,14 +237,17 @@ async fn asked(
         ask(engine, number);
         became
     };
-    let (became, entered) = if detail == Act::Abort.barcode() {
+    let (became, entered) = if detail.split(' ').next() == Some(&*Act::Abort.barcode()) {
         future::join(ask(), entered).await
     } else {
         entered.await?;
         (ask().await, Ok(()))
     };
     if entered.is_err() {
-        tracing::error!("the audit does not have that {} aborted what was in lane {subject}", visit.name());
+        tracing::error!(
+            "the audit does not have that {} asked to abort what was in lane {subject}",
+            visit.name()
+        );
     }
     became.map_err(|error| Trouble::broken(visit, &error))
 }
@@ -276,7 +279,9 @@ async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
     let late = |error| Trouble::new(&visit, StatusCode::CONFLICT, told(&visit, &error));
     let until = app.lanes(&visit)?.live.until(&pressed.beat).map_err(late)?;
     let ask = |engine: &Engine, number| engine.act(number, (place, &pressed.of), act, visit.name(), until);
-    let became = asked(&app, &visit, ("lane", name, act.barcode()), ask).await?;
+    // Whether something else was in the lane by then is known only afterwards.
+    let detail = format!("{} {}", act.barcode(), pressed.of).trim_end().to_owned();
+    let became = asked(&app, &visit, ("lane", name, detail), ask).await?;
     match (visit.is_script, became.is_taken) {
         (true, is_taken) => Ok(json(&ScanReply {
             counter: 0,

@@ -5,7 +5,7 @@ use std::net::TcpListener;
 use std::thread;
 
 use halfrow_station::record::{Record, RunCause};
-use halfrow_station::store::{Parcel, SharedBoard};
+use halfrow_station::store::{Claim, Parcel, SharedBoard};
 
 use super::claims::run_of;
 use super::{add, settings, shared, states, with_a_job, worker};
@@ -18,19 +18,35 @@ fn a_run_that_was_ended_from_outside_or_whose_board_was_in_use_costs_its_job_no_
     let (server, mut plant, _) = with_a_job();
     for (number, code) in (1..).zip([4, 128 + 1, 128 + 2, 128 + 15, 4, 4]) {
         let claim = plant.claim(&worker("12")).unwrap().unwrap();
-        let Parcel::Run { mut record, .. } = run_of(&claim, number, End::Error(RunCause::Station)) else {
-            panic!("it is a run")
-        };
-        record.conclusion.exit_code = code;
-        let text = serde_json::to_string(&record).unwrap();
-        assert_eq!(Record::parse(text.as_bytes()).unwrap(), *record);
-        let sha256 = halfrow::result::sha256([text.as_bytes()]);
-        plant.take(&Parcel::Run { record, text, sha256 }).unwrap();
+        plant.take(&ended_with(&claim, number, code)).unwrap();
         plant.give_back(&claim.lease).unwrap();
         assert_eq!(states(&server), [["waiting", "0"]], "{code}");
     }
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
     plant.take(&run_of(&claim, 9, End::Error(RunCause::Link))).unwrap();
+    assert_eq!(states(&server), [["waiting", "1"]]);
+}
+
+/// An ERROR of a claim, with this exit code.
+fn ended_with(claim: &Claim, number: u32, code: u8) -> Parcel {
+    let Parcel::Run { mut record, .. } = run_of(claim, number, End::Error(RunCause::Station)) else {
+        panic!("it is a run")
+    };
+    record.conclusion.exit_code = code;
+    let text = serde_json::to_string(&record).unwrap();
+    assert_eq!(Record::parse(text.as_bytes()).unwrap(), *record);
+    let sha256 = halfrow::result::sha256([text.as_bytes()]);
+    Parcel::Run { record, text, sha256 }
+}
+
+/// A plant that was put back has forgotten the claim, and never counted it.
+#[test]
+fn a_claim_that_was_forgotten_gives_back_no_claim_that_was_counted() {
+    let (server, mut plant, _) = with_a_job();
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    plant.take(&run_of(&claim, 1, End::Error(RunCause::Link))).unwrap();
+    let forgotten = Claim { fence: claim.fence + 1, ..claim };
+    plant.take(&ended_with(&forgotten, 2, 4)).unwrap();
     assert_eq!(states(&server), [["waiting", "1"]]);
 }
 

@@ -41,14 +41,14 @@ fn an_abort_that_cannot_be_entered_is_done_all_the_same() {
     database.execute_batch("DROP TRIGGER full").unwrap();
     assert_eq!(lane("abort"), 409, "nothing is under way");
     let acts = "SELECT act || ' ' || detail FROM audit ORDER BY id";
-    let scan = format!("scan {}", SERIALS[0]);
-    assert_eq!(station.query(acts), [scan.as_str(), &scan, "lane HR:ABORT"], "what could be entered");
+    let [scan, abort] = ["scan", "lane HR:ABORT"].map(|act| format!("{act} {}", SERIALS[0]));
+    assert_eq!(station.query(acts), [&*scan, &scan, &abort], "what could be entered");
 }
 
 /// A page without a script may be of any age: meanwhile a colleague's board may be in the lane.
 #[test]
 fn an_abort_ends_only_what_its_page_showed() {
-    let (_station, serving) = started_by("button");
+    let (station, serving) = started_by("button");
     let abort = |of: &str| serving.here().post("/lanes/1/abort", &[("of", of)]).send();
     let shows = |serial: &str| format!("<input type=\"hidden\" name=\"of\" value=\"{serial}\">");
     let page = seen(&serving, "lane waiting");
@@ -64,6 +64,10 @@ fn an_abort_ends_only_what_its_page_showed() {
     }
     seen(&serving, &shows(SERIALS[1]));
     assert_eq!(abort(SERIALS[1]).status, 303);
+    // The audit says what was meant, whatever became of it.
+    let meant = station.query("SELECT detail FROM audit WHERE act = 'lane' ORDER BY id");
+    let [first, second] = [0, 1].map(|number| format!("HR:ABORT {}", SERIALS[number]));
+    assert_eq!(meant, [&*first, &first, "HR:ABORT", &second]);
 }
 
 /// Everything that the page offers is also accepted.
