@@ -5,16 +5,13 @@
 //! Where even the rest takes long, everything is counted less often.
 
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
 
 use parking_lot::Mutex;
 
+use super::paced::Paced;
 use super::{PlanName, count, plans};
 use crate::clock::DAY_MS;
 use crate::store::{DatabaseError, Snapshot, StoreError, statements, values};
-
-/// The longest pause between two counts.
-const LONGEST: Duration = Duration::from_secs(60);
 
 /// What is counted together.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -57,15 +54,8 @@ impl Count {
 #[derive(Debug)]
 pub struct Tally {
     by_lane: bool,
-    rests: u32,
-    before: Mutex<Before>,
-}
-
-#[derive(Debug, Default)]
-struct Before {
-    days: BTreeMap<i64, Day>,
-    /// The last result, and until when it is returned again.
-    last: Option<(Instant, BTreeMap<Cell, Count>)>,
+    days: Mutex<BTreeMap<i64, Day>>,
+    last: Paced<BTreeMap<Cell, Count>>,
 }
 
 /// A day, as last counted.
@@ -80,7 +70,7 @@ impl Tally {
     /// times as long as that took, a minute at most, and returns the same result meanwhile.
     #[must_use]
     pub fn new(by_lane: bool, rests: u32) -> Self {
-        Self { by_lane, rests, before: Mutex::default() }
+        Self { by_lane, days: Mutex::default(), last: Paced::new(rests) }
     }
 
     /// Counts every run that is over, except those of what checks a shift.
@@ -88,17 +78,7 @@ impl Tally {
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
     pub fn counts(&self, of: &Snapshot) -> Result<BTreeMap<Cell, Count>, StoreError> {
-        let mut before = self.before.lock();
-        let begun = Instant::now();
-        if let Some((_, counts)) = before.last.as_ref().filter(|(until, _)| begun < *until) {
-            return Ok(counts.clone());
-        }
-        let counts = self.now(&mut before.days, of)?;
-        if self.rests > 0 {
-            let rest = begun.elapsed().saturating_mul(self.rests).min(LONGEST);
-            before.last = Some((Instant::now() + rest, counts.clone()));
-        }
-        Ok(counts)
+        self.last.get(|| self.now(&mut self.days.lock(), of))
     }
 
     fn now(&self, days: &mut BTreeMap<i64, Day>, of: &Snapshot) -> Result<BTreeMap<Cell, Count>, StoreError> {

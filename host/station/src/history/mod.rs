@@ -10,6 +10,7 @@
 //!  stations those of a plant, as it last heard from them
 //!  mismatch what two stations of a plant bound differently
 //!  counts   runs by verdict, for callers that ask every few seconds
+//!  paced    what is not found anew at each of their questions
 //! ```
 //!
 //! Each takes a [`Snapshot`], so everything that one page shows is of the same moment.
@@ -18,6 +19,7 @@ pub mod control;
 pub mod counts;
 pub mod drift;
 pub mod mismatch;
+pub mod paced;
 pub mod pareto;
 pub mod rate;
 pub mod runs;

@@ -14,7 +14,7 @@ pub(super) const SCHEMAS: [&str; 8] = [
 ];
 
 /// Words of a plant's statements about jobs and boards. Earlier ones use later ones.
-pub(super) const OF_PLANT: [(&str, &str); 14] = [
+pub(super) const OF_PLANT: [(&str, &str); 15] = [
     // How it stands with a job. The end of its lease is not written down before its next claim.
     (
         "{job_state}",
@@ -24,6 +24,8 @@ pub(super) const OF_PLANT: [(&str, &str); 14] = [
     ("{exhausted}", "'it was claimed five times, and no run of it was judged'"),
     // Whether it was claimed for the last time, and never came back.
     ("{is_exhausted}", "({is_lapsed} AND {is_spent})"),
+    // Whether a person gave it up; all others that are dead were claimed.
+    ("{is_cancelled}", "(job.state = 'dead' AND job.attempts = 0)"),
     // Whether whoever claimed it last has lost it.
     ("{is_lapsed}", "(job.state = 'claimed' AND job.until_ms < {now_ms})"),
     // Whether it may not be claimed again.
@@ -210,6 +212,7 @@ statements! {
     pub(super) RETRY_JOB = "plant/retry-job.sql";
     pub(super) JOBS = "plant/jobs.sql";
     pub(super) OPEN_JOBS = "plant/open-jobs.sql";
+    pub(super) DEAD_JOBS = "plant/dead-jobs.sql";
     pub(super) ADD_BUNDLE = "plant/add-bundle.sql";
     pub(super) BUNDLE = "plant/bundle.sql";
     pub(super) PUBLISH = "plant/publish.sql";

@@ -16,7 +16,6 @@ use super::metrics::Turns;
 use super::trouble::Trouble;
 use super::visit::{User, Visit};
 use crate::engine::Engine;
-use crate::history::counts::Tally;
 use crate::plan::Plan;
 use crate::said::Said;
 use crate::secret::SecretError;
@@ -80,8 +79,7 @@ impl App {
     ) -> io::Result<Self> {
         let (live, listens) = Live::start(&engine)?;
         let (plans, mark) = (named(&settings), mark(&settings));
-        let (source, turns) =
-            (Source::Station(Lanes { engine, live, listens, hints }), Turns::new(Tally::new(true, 0)));
+        let (source, turns) = (Source::Station(Lanes { engine, live, listens, hints }), Turns::new(true, 0));
         Ok(Self(Arc::new(Parts {
             settings,
             access,
@@ -97,7 +95,7 @@ impl App {
     #[must_use]
     pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
         let source = Source::Plant(PlantPool::new(address));
-        let (plans, mark, turns) = (String::new(), String::new(), Turns::new(Tally::new(false, RESTS)));
+        let (plans, mark, turns) = (String::new(), String::new(), Turns::new(false, RESTS));
         Self(Arc::new(Parts { settings, access, plans, mark, turns, source, unaudited: Mutex::default() }))
     }
 

@@ -24,7 +24,7 @@ pub enum JobState {
     Claimed,
     /// It was judged.
     Done,
-    /// It came to nothing, and waits for a person.
+    /// It came to nothing and waits for a person, or a person cancelled it.
     Dead,
 }
 
@@ -83,7 +83,7 @@ pub struct Job {
     pub state: JobState,
     /// Who has it, or had it last.
     pub holder: Option<String>,
-    /// How often it was claimed since it was added, or since a person had it tried again.
+    /// How often it was claimed since it was added, or since a person had it tried again or cancelled it.
     pub attempts: u32,
     /// The run that counts.
     pub run: Option<String>,
@@ -174,7 +174,7 @@ impl Plant {
         Ok(added)
     }
 
-    /// Cancels the job; whoever has it loses it. Returns whether it was waiting or claimed.
+    /// Cancels the job; whoever has it loses it. Returns false if there is none, or it is done or was cancelled before.
     ///
     /// # Errors
     /// Like [`Self::add_jobs`].
@@ -324,7 +324,7 @@ pub fn jobs(of: &Snapshot, states: &[JobState], after: &str, most: u32) -> Resul
     of.rows("to tell its jobs", sql::JOBS, values![&states.join(" "), after, most], job)
 }
 
-/// The jobs of one state.
+/// The jobs that are waiting, or claimed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct JobsInState {
     pub(crate) state: JobState,
@@ -333,7 +333,7 @@ pub(crate) struct JobsInState {
     pub(crate) oldest_ms: i64,
 }
 
-/// The jobs that are not done, by their states; a state without jobs is left out.
+/// The jobs that are to be judged, by their states; a state without jobs is left out.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
@@ -341,6 +341,15 @@ pub(crate) fn open_jobs(of: &Snapshot) -> Result<Vec<JobsInState>, StoreError> {
     of.rows("to count its jobs", sql::OPEN_JOBS, &[], |row| {
         Ok(JobsInState { state: row.get(0)?, jobs: row.get(1)?, oldest_ms: row.get(2)? })
     })
+}
+
+/// How many jobs wait for a person. This reads every job.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read.
+pub(crate) fn dead_jobs(of: &Snapshot) -> Result<u32, StoreError> {
+    let counted = of.rows("to count its jobs", sql::DEAD_JOBS, &[], |row| row.get::<u32>(0))?;
+    Ok(counted.into_iter().sum())
 }
 
 fn job(row: &Row<'_>) -> Result<Job, DatabaseError> {

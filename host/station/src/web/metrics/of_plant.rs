@@ -7,7 +7,7 @@ use super::{counted, turns};
 use crate::history::counts::{Cell, Count};
 use crate::history::mismatch::mismatches;
 use crate::history::stations::{Station, stations};
-use crate::store::{JobState, JobsInState, SharedBoard, boards, open_jobs};
+use crate::store::{JobState, JobsInState, SharedBoard, boards, dead_jobs, open_jobs};
 use crate::web::state::App;
 use crate::web::visit::Visit;
 
@@ -38,7 +38,8 @@ const MISMATCHES: Metric = gauge(
     "Devices and units that are bound to each other at a station but not at the plant.",
 );
 
-const JOBS: Metric = gauge("halfrow_plant_jobs", "Jobs that are not done.");
+const JOBS: Metric =
+    gauge("halfrow_plant_jobs", "Jobs that are not done, without those that a person cancelled.");
 const OLDEST: Metric = gauge(
     "halfrow_plant_jobs_oldest_waiting_seconds",
     "Age of the oldest job that no station has; 0 if there is none.",
@@ -52,16 +53,24 @@ struct PlantFigures {
     counts: BTreeMap<Cell, Count>,
     stations: Vec<Station>,
     mismatches: Option<usize>,
-    shared: Option<(Vec<JobsInState>, Vec<SharedBoard>)>,
+    shared: Option<Shared>,
+}
+
+/// Jobs and boards.
+struct Shared {
+    open: Vec<JobsInState>,
+    dead: u32,
+    boards: Vec<SharedBoard>,
 }
 
 /// Writes all figures. They say so if the plant is away.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) {
-    let held = turns::counted(app, visit, |now, tally| {
+    let held = turns::counted(app, visit, |now, turns| {
         let version = Some(now.version()?.unsigned_abs());
         let mismatches = Some(mismatches(now)?.len());
-        let (counts, stations) = (tally.counts(now)?, stations(now)?);
-        let shared = Some((open_jobs(now)?, boards(now)?));
+        let (counts, stations) = (turns.tally.counts(now)?, stations(now)?);
+        let dead = turns.dead_jobs.get(|| dead_jobs(now))?;
+        let shared = Some(Shared { open: open_jobs(now)?, dead, boards: boards(now)? });
         Ok(PlantFigures { version, counts, stations, mismatches, shared })
     });
     let held = held.await;
@@ -101,22 +110,23 @@ fn heard(text: &mut Text, stations: &[Station]) {
 }
 
 /// Jobs and boards by state, also for states without any: an alert must see that there are none.
-fn lent(text: &mut Text, shared: Option<&(Vec<JobsInState>, Vec<SharedBoard>)>) {
+fn lent(text: &mut Text, shared: Option<&Shared>) {
     let of_state = |state| move |jobs: &&JobsInState| jobs.state == state;
     let mut of = text.of(&JOBS);
-    if let Some((jobs, _)) = shared {
-        for state in [JobState::Waiting, JobState::Claimed, JobState::Dead] {
-            let jobs = jobs.iter().find(of_state(state)).map_or(0, |found| found.jobs);
+    if let Some(Shared { open, dead, .. }) = shared {
+        let jobs = |state| open.iter().find(of_state(state)).map_or(0, |found| found.jobs);
+        let [waiting, claimed] = [JobState::Waiting, JobState::Claimed].map(|state| (state, jobs(state)));
+        for (state, jobs) in [waiting, claimed, (JobState::Dead, *dead)] {
             of.put(&[("state", &state.to_string())], jobs);
         }
     }
     let mut of = text.of(&OLDEST);
-    if let Some((jobs, _)) = shared {
-        let oldest_ms = jobs.iter().find(of_state(JobState::Waiting)).map_or(0, |found| found.oldest_ms);
+    if let Some(Shared { open, .. }) = shared {
+        let oldest_ms = open.iter().find(of_state(JobState::Waiting)).map_or(0, |found| found.oldest_ms);
         of.put(&[], oldest_ms.max(0) as f64 / 1000.0);
     }
     let mut of = text.of(&BOARDS);
-    if let Some((_, boards)) = shared {
+    if let Some(Shared { boards, .. }) = shared {
         for state in ["free", "held", "out"] {
             of.put(&[("state", state)], boards.iter().filter(|board| state_of(board) == state).count());
         }

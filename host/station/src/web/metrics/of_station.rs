@@ -77,8 +77,8 @@ type StoreFigures = (BTreeMap<Cell, Count>, Vec<Unsent>, Option<Room>);
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
     let engine = &app.lanes(visit)?.engine;
     let data = app.settings().data.clone();
-    let kept: Option<StoreFigures> = turns::counted(app, visit, move |now, tally| {
-        Ok((tally.counts(now)?, now.unsent()?, Room::of(&data)))
+    let kept: Option<StoreFigures> = turns::counted(app, visit, move |now, turns| {
+        Ok((turns.tally.counts(now)?, now.unsent()?, Room::of(&data)))
     })
     .await;
     text.of(&STATION).put(&[("station", app.station())], 1);

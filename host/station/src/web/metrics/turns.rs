@@ -8,6 +8,7 @@ use tokio::sync::Mutex;
 use tokio::time;
 
 use crate::history::counts::Tally;
+use crate::history::paced::Paced;
 use crate::said::Said;
 use crate::store::{Snapshot, StoreError};
 use crate::web::state::App;
@@ -19,14 +20,17 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// What was counted before, and whose turn it is.
 #[derive(Debug)]
 pub(in crate::web) struct Turns {
-    tally: Tally,
+    pub(super) tally: Tally,
+    /// How many jobs of a plant wait for a person.
+    pub(super) dead_jobs: Paced<u32>,
     turn: Arc<Mutex<()>>,
 }
 
 impl Turns {
-    /// Nothing is counted yet.
-    pub(in crate::web) fn new(tally: Tally) -> Self {
-        Self { tally, turn: Arc::default() }
+    /// Nothing is counted yet. With `by_lane` the lanes of a station are told apart. After each count there is a pause of `rests`
+    /// times as long as that took, a minute at most.
+    pub(in crate::web) fn new(by_lane: bool, rests: u32) -> Self {
+        Self { tally: Tally::new(by_lane, rests), dead_jobs: Paced::new(rests), turn: Arc::default() }
     }
 }
 
@@ -34,7 +38,7 @@ impl Turns {
 pub(super) async fn counted<T: Send + 'static>(
     app: &App,
     visit: &Visit,
-    count: impl FnOnce(&Snapshot, &Tally) -> Result<T, StoreError> + Send + 'static,
+    count: impl FnOnce(&Snapshot, &Turns) -> Result<T, StoreError> + Send + 'static,
 ) -> Option<T> {
     let of = app.clone();
     let found = time::timeout(PATIENCE, async {
@@ -42,7 +46,7 @@ pub(super) async fn counted<T: Send + 'static>(
         let look = move |now: &Snapshot| {
             // The turn ends with the look, however long that takes.
             let _turn = turn;
-            count(now, &of.turns().tally)
+            count(now, of.turns())
         };
         app.try_to_look(visit, look).await
     });

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use super::figures::once;
 use super::text::{Figures, assert_sound, told};
-use crate::common::{Did, HANG, folder, program};
+use crate::common::{Did, HANG, engel, folder, program, reason};
 use crate::history::released::history;
 use crate::jobs::{add, run_out, shared, worker};
 use crate::pages::http::Request;
@@ -66,6 +66,8 @@ fn of_jobs(figures: &Figures) -> [f64; 6] {
     [&jobs[0], &jobs[1], &jobs[2], &boards[0], &boards[1], &boards[2]].map(|name| figures.at(name))
 }
 
+const DEAD_JOBS: &str = "halfrow_plant_jobs{state=\"dead\"}";
+
 #[test]
 fn a_plant_tells_which_jobs_wait_for_a_station_or_a_person_and_which_boards_are_there() {
     let (server, mut plant) = shared(3);
@@ -77,12 +79,13 @@ fn a_plant_tells_which_jobs_wait_for_a_station_or_a_person_and_which_boards_are_
     let claim = plant.claim(&worker("7")).unwrap().unwrap();
     assert_eq!(claim.job, jobs[0]);
     server.change(&format!(
-        "UPDATE job SET state = 'dead', said = 'no' WHERE id = '{}'; UPDATE job SET state = 'done' WHERE id = '{}';
+        "UPDATE job SET state = 'dead', said = 'no', attempts = 5 WHERE id = '{}';
+         UPDATE job SET state = 'done' WHERE id = '{}';
          UPDATE job SET created_ms = created_ms - 7200000 WHERE id <> '{}';
          UPDATE board SET out = 'burnt' WHERE name = (SELECT max(name) FROM board WHERE holder IS NULL)",
         jobs[1], jobs[2], jobs[0]
     ));
-    let figures = Figures::of(&serving);
+    let figures = once(&serving, DEAD_JOBS, 1.0);
     assert_sound(&figures);
     assert_eq!(of_jobs(&figures), [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
     assert!(
@@ -93,6 +96,54 @@ fn a_plant_tells_which_jobs_wait_for_a_station_or_a_person_and_which_boards_are_
     // Whoever had the job and the board is gone.
     run_out(&server);
     assert_eq!(of_jobs(&Figures::of(&serving)), [2.0, 0.0, 1.0, 2.0, 0.0, 1.0]);
+}
+
+/// Whoever cancels a job knows of it, and nobody else has to look at it; so a person can say of a dead job that it is settled.
+#[test]
+fn a_job_that_a_person_cancelled_waits_for_no_person() {
+    let (server, mut plant) = shared(1);
+    let (_folder, serving) = served(&server);
+    let jobs = add(&mut plant, 4);
+    let reason = reason("a mistake");
+    for _ in 0..2 {
+        let claim = plant.claim(&worker("7")).unwrap().unwrap();
+        plant.refuse(&claim, "its unit passed").unwrap();
+        plant.give_back(&claim.lease).unwrap();
+    }
+    let claim = plant.claim(&worker("7")).unwrap().unwrap();
+    assert_eq!(claim.job, jobs[2]);
+    assert_eq!(of_jobs(&once(&serving, DEAD_JOBS, 2.0))[..3], [1.0, 1.0, 2.0]);
+    // One that is dead, one that is claimed, and one that waits.
+    for (job, left) in [(&jobs[0], 1.0), (&jobs[2], 1.0), (&jobs[3], 1.0), (&jobs[1], 0.0)] {
+        assert!(plant.cancel_job(job, engel(&reason)).unwrap(), "{job}");
+        assert!(!plant.cancel_job(job, engel(&reason)).unwrap(), "{job} is cancelled already");
+        once(&serving, DEAD_JOBS, left);
+    }
+    assert_eq!(of_jobs(&Figures::of(&serving))[..3], [0.0; 3]);
+    assert!(plant.retry_job(&jobs[0], engel(&reason)).unwrap());
+    assert_eq!(of_jobs(&Figures::of(&serving))[..3], [1.0, 0.0, 0.0]);
+    plant.give_back(&claim.lease).unwrap();
+    let claim = plant.claim(&worker("7")).unwrap().unwrap();
+    plant.refuse(&claim, "its unit passed").unwrap();
+    once(&serving, DEAD_JOBS, 1.0);
+}
+
+/// No job is ever removed. The statement's words stand here as what they begin with; the plan does not depend on the rest.
+#[test]
+fn jobs_that_are_done_are_not_read_for_those_that_wait() {
+    let (server, mut plant) = shared(0);
+    add(&mut plant, 1);
+    server.change(
+        "INSERT INTO job SELECT gen_random_uuid()::text, plan_sha256, product, serial, kind, needs, priority, 'done', NULL, 1, NULL,
+           1, NULL, created_ms, operator_id, NULL FROM job, generate_series(1, 20000);
+         ANALYZE job",
+    );
+    let text = include_str!("../../../sql/plant/open-jobs.sql")
+        .replace("{job_state}", "job.state")
+        .replace("{is_exhausted}", "(job.attempts >= 5)")
+        .replace("{now_ms}", "0");
+    let plan = server.rows(&format!("EXPLAIN {text}")).concat().join("\n");
+    assert!(plan.contains("job_open") && !plan.contains("Seq Scan"), "{plan}");
 }
 
 /// The page's connection, which is kept, is older than the tables.
