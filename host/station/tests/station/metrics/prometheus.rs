@@ -174,5 +174,5 @@ fn every_query_of_the_dashboards_and_of_the_alerts_is_answered() {
     let (_, rules) = prometheus.get("/api/v1/rules");
     let rules: Value = serde_json::from_str(&rules).unwrap();
     let groups = rules["data"]["groups"].as_array().unwrap();
-    assert_eq!(groups.iter().flat_map(|group| group["rules"].as_array().unwrap()).count(), 18);
+    assert_eq!(groups.iter().flat_map(|group| group["rules"].as_array().unwrap()).count(), 19);
 }
