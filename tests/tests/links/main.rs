@@ -16,6 +16,7 @@ mod taken_over;
 mod tcp;
 mod unplugged;
 
+use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{Ended, halfrow};
 use halfrow_tests::served::Served;
 
@@ -36,6 +37,20 @@ fn passes(served: &Served) {
     let said = ended.json();
     assert_eq!(said["board"]["kind"], "mock");
     assert_eq!(said["link"]["damaged_in"], 0);
+}
+
+/// What comes of `try_it` once it does not find the port busy any more: a process that another test has just started has every open
+/// port, too, until it runs its own program.
+fn once_free<T>(mut try_it: impl FnMut() -> T, is_busy: impl Fn(&T) -> bool) -> T {
+    let mut came = try_it();
+    wait_until("the port to be free", || {
+        let is_free = !is_busy(&came);
+        if !is_free {
+            came = try_it();
+        }
+        is_free
+    });
+    came
 }
 
 /// The run ends with `code` and says `sentence`.

@@ -12,7 +12,7 @@ use halfrow_tests::program::halfrow;
 use halfrow_tests::served::Served;
 use nix::poll::{PollFd, PollFlags, poll};
 
-use crate::{ends, passes, verify};
+use crate::{ends, once_free, passes, verify};
 
 #[test]
 fn a_board_behind_a_serial_port_passes_again_and_again() {
@@ -67,7 +67,7 @@ fn a_port_in_use_is_busy_until_it_is_closed() {
     ends(&busy, 4, "is in use by links");
     assert_eq!(busy.json()["verdict"], "ERROR");
     drop(held);
-    passes(&served);
+    once_free(|| verify(&served.target(), &[]), |ended| ended.code == Some(4)).succeeded();
 }
 
 /// Nobody can close another program when this one is meant.
