@@ -42,15 +42,9 @@ fn passes(served: &Served) {
 /// What comes of `try_it` once it does not find the port busy any more: a process that another test has just started has every open
 /// port, too, until it runs its own program.
 fn once_free<T>(mut try_it: impl FnMut() -> T, is_busy: impl Fn(&T) -> bool) -> T {
-    let mut came = try_it();
-    wait_until("the port to be free", || {
-        let is_free = !is_busy(&came);
-        if !is_free {
-            came = try_it();
-        }
-        is_free
-    });
-    came
+    let mut came = None;
+    wait_until("the port to be free", || !is_busy(came.insert(try_it())));
+    came.unwrap()
 }
 
 /// The run ends with `code` and says `sentence`.

@@ -138,12 +138,9 @@ async fn understood(
     let Some(label) = label.or_else(|| scanned.typed.then(|| scanned.text.clone())) else {
         return refused(ScanError::Incomplete);
     };
-    let armed = match scanned.armed() {
-        None => None,
-        Some(name) => match place(app, &name) {
-            Ok(lane) => Some(lane),
-            Err(error) => return refused(error),
-        },
+    let armed = match scanned.armed().map(|name| place(app, &name)).transpose() {
+        Ok(armed) => armed,
+        Err(error) => return refused(error),
     };
     match Scan::read(&label) {
         Ok(Scan::Lane(name)) => match place(app, &name) {
@@ -164,8 +161,9 @@ async fn understood(
         _ => {
             let (lane, name) = armed.unzip();
             let entry = ("scan", name.unwrap_or_default(), kept(app, &label));
+            let is_abort = label == Act::Abort.barcode();
             let ask = |engine: &Engine, number| engine.label(number, lane, &label, visit.name(), until);
-            let Became { is_taken, lane, said, .. } = asked(app, visit, entry, ask).await?;
+            let Became { is_taken, lane, said, .. } = asked(app, visit, entry, is_abort, ask).await?;
             let said = visit.words.tell(&said).text;
             let armed = if is_taken { None } else { scanned.armed() };
             Ok(scanned.answer(lane, if is_taken { Ok(said) } else { Err(said) }, armed))
@@ -228,6 +226,7 @@ async fn asked(
     app: &App,
     visit: &Visit,
     (act, subject, detail): (&'static str, &str, String),
+    is_abort: bool,
     ask: impl FnOnce(&Engine, u64),
 ) -> Result<Became, Trouble> {
     let Lanes { engine, live, .. } = app.lanes(visit)?;
@@ -237,7 +236,7 @@ async fn asked(
         ask(engine, number);
         became
     };
-    let (became, entered) = if detail.split(' ').next() == Some(&*Act::Abort.barcode()) {
+    let (became, entered) = if is_abort {
         future::join(ask(), entered).await
     } else {
         entered.await?;
@@ -281,7 +280,7 @@ async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
     let ask = |engine: &Engine, number| engine.act(number, (place, &pressed.of), act, visit.name(), until);
     // Whether something else was in the lane by then is known only afterwards.
     let detail = format!("{} {}", act.barcode(), pressed.of).trim_end().to_owned();
-    let became = asked(&app, &visit, ("lane", name, detail), ask).await?;
+    let became = asked(&app, &visit, ("lane", name, detail), act == Act::Abort, ask).await?;
     match (visit.is_script, became.is_taken) {
         (true, is_taken) => Ok(json(&ScanReply {
             counter: 0,

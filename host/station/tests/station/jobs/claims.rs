@@ -26,9 +26,15 @@ fn run_of_unit(serial: &str, number: u32, end: End) -> Parcel {
 
 /// Like [`run_of_unit`], for a claim.
 pub(super) fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
-    let parcel = run_of_unit(claim.serial(), number, end);
+    with_record(run_of_unit(claim.serial(), number, end), |record| {
+        record.run.job = Some(JobClaim { id: claim.job.clone(), fence: claim.fence });
+    })
+}
+
+/// The parcel of a run whose record is changed so.
+pub(super) fn with_record(parcel: Parcel, change: impl FnOnce(&mut Record)) -> Parcel {
     let Parcel::Run { mut record, .. } = parcel else { panic!("it is a run") };
-    record.run.job = Some(JobClaim { id: claim.job.clone(), fence: claim.fence });
+    change(&mut record);
     let text = serde_json::to_string(&record).unwrap();
     assert_eq!(Record::parse(text.as_bytes()).unwrap(), *record);
     let sha256 = halfrow::result::sha256([text.as_bytes()]);

@@ -4,10 +4,10 @@ use std::io::{Read as _, Write as _};
 use std::net::TcpListener;
 use std::thread;
 
-use halfrow_station::record::{Record, RunCause};
+use halfrow_station::record::RunCause;
 use halfrow_station::store::{Claim, Parcel, SharedBoard};
 
-use super::claims::run_of;
+use super::claims::{run_of, with_record};
 use super::{add, settings, shared, states, with_a_job, worker};
 use crate::common::did_in;
 use crate::history::made::End;
@@ -29,14 +29,8 @@ fn a_run_that_was_ended_from_outside_or_whose_board_was_in_use_costs_its_job_no_
 
 /// An ERROR of a claim, with this exit code.
 fn ended_with(claim: &Claim, number: u32, code: u8) -> Parcel {
-    let Parcel::Run { mut record, .. } = run_of(claim, number, End::Error(RunCause::Station)) else {
-        panic!("it is a run")
-    };
-    record.conclusion.exit_code = code;
-    let text = serde_json::to_string(&record).unwrap();
-    assert_eq!(Record::parse(text.as_bytes()).unwrap(), *record);
-    let sha256 = halfrow::result::sha256([text.as_bytes()]);
-    Parcel::Run { record, text, sha256 }
+    let error = run_of(claim, number, End::Error(RunCause::Station));
+    with_record(error, |record| record.conclusion.exit_code = code)
 }
 
 /// A plant that was put back has forgotten the claim, and never counted it.
