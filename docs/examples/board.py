@@ -145,10 +145,10 @@ class Board:
         seconds_left = self.last_heard + 10 - time.monotonic()
         is_held = self.holder is not None and self.holder[0] != host and seconds_left > 0
         refuse_if(is_held and not take_over, HELD, math.ceil(10 * seconds_left))
+        self.last_heard = time.monotonic()
         if self.holder != (host, nonce):  # otherwise the reply to this very HELLO was lost
             self.holder = (host, nonce)
             self.session = self.session % 255 + 1
-            self.last_heard = time.monotonic()
             self.rows_sent = 0
             self.clear_counters()
             self.reset(b"", 0, 0)

@@ -60,7 +60,7 @@ pub fn source(geometry: &Geometry, row_factor: RowFactor, column: usize) -> Sour
 /// With C above 2W − 2 or Q above 2^24 the source may lie outside the row.
 #[must_use]
 pub fn source_by_entry(centre2: u32, entry: u32, column: usize) -> Source {
-    locate(rounded(row_start(centre2, entry) + 2 * column as i64 * i64::from(entry)), column)
+    locate(q_of_line(row_start(centre2, entry) + 2 * column as i64 * i64::from(entry)), column)
 }
 
 /// S[0] = C · (2^24 − Q), in units of 2^-25 pixel.
@@ -68,22 +68,22 @@ fn row_start(centre2: u32, entry: u32) -> i64 {
     i64::from(centre2) * (i64::from(RowFactor::ONE.get()) - i64::from(entry))
 }
 
-/// q: S in units of 2^-25 pixel, rounded to 2^-13.
-fn rounded(coordinate: i64) -> i64 {
+/// q, in units of 2^-13 pixel, of an S of datapath 1, which is in units of 2^-25 pixel.
+fn q_of_line(coordinate: i64) -> i64 {
     (coordinate + (1 << 11)) >> 12
 }
 
 /// The source of `column`, from q.
-pub(crate) fn locate(rounded: i64, column: usize) -> Source {
-    let floor = rounded >> 13;
-    let base = base_column(floor, column);
-    let position = rounded - (base << 13);
-    Source { base, column: floor, node: (position >> 8) as usize, fraction: (position & 255) as i32 }
+pub(crate) fn locate(q: i64, column: usize) -> Source {
+    let n = q >> 13;
+    let base = base_column(n, column);
+    let x = q - (base << 13);
+    Source { base, column: n, node: (x >> 8) as usize, fraction: (x & 255) as i32 }
 }
 
-/// a: the nearest column at or left of `floor` whose colour is that of `column`.
-pub(crate) fn base_column(floor: i64, column: usize) -> i64 {
-    floor - ((floor ^ column as i64) & 1)
+/// a: the nearest column at or left of `n` whose colour is that of `column`.
+pub(crate) fn base_column(n: i64, column: usize) -> i64 {
+    n - ((n ^ column as i64) & 1)
 }
 
 /// The taps G0 R1 G2 R3 G4 R5 G6 around the base column a.
@@ -118,7 +118,7 @@ pub fn correct_row(
 ) {
     let mut coordinate = row_start(geometry.centre2(), row_factor.get());
     let source = |column| {
-        let source = locate(rounded(coordinate), column);
+        let source = locate(q_of_line(coordinate), column);
         coordinate += 2 * i64::from(row_factor.get());
         source
     };

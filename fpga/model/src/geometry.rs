@@ -76,7 +76,7 @@ impl Geometry {
         Self::new(width, height, depth, centre2)
     }
 
-    /// The same frame with the optical centre at `column`, rounded to half a column: C = round(2 · cx).
+    /// The same frame with the optical centre at `column`, rounded to half a column: C = floor(2 · cx + 1/2).
     ///
     /// # Errors
     /// [`GeometryError::Centre`] when the rounded centre is outside columns 0 to W − 1 or is not a number.

@@ -1,6 +1,6 @@
 //! Which tables suit a board's ring (DATAPATH.md, "Ring" and "Legal").
 
-use crate::grid::rounded;
+use crate::grid::q_of_grid;
 use crate::table::Entries;
 use crate::{RowFactor, RowValues, TableError, TableSet, source};
 
@@ -42,7 +42,7 @@ impl TableSet {
     /// The ends of row `row` of a grid, if both lie in the row.
     fn ends_of_values(&self, row: usize, values: &RowValues) -> Result<Ends, TableError> {
         let last = self.geometry().width() - 1;
-        let [first, end] = [0, last].map(|column| rounded(values.coordinate(column)));
+        let [first, end] = [0, last].map(|column| q_of_grid(values.coordinate(column)));
         if first < 0 {
             // O is in units of q.
             return Err(TableError::BeforeFirst { row, raise: -first });

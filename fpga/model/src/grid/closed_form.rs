@@ -2,7 +2,7 @@
 
 use super::projection::ProjectedRow;
 use super::rows::{RowSpline, fractions};
-use super::{ENTRY_BITS, Grid, rounded};
+use super::{ENTRY_BITS, Grid, q_of_grid};
 use crate::{Camera, Geometry, GridShape, RowFactor, RowValues, TableSet};
 
 /// Added to a factor, so that dropping its last three bits rounds.
@@ -121,7 +121,7 @@ fn raise_offsets(geometry: &Geometry, grid: &mut Grid) {
     let mut values = RowValues::default();
     for row in 0..geometry.height() {
         grid.values(geometry.centre2(), row, &mut values);
-        let raise = -rounded(values.coordinate(0));
+        let raise = -q_of_grid(values.coordinate(0));
         if raise > 0 {
             let (first, _) = super::spline(grid.shape, row);
             for row in first..first + 3 {

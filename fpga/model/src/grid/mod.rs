@@ -17,7 +17,7 @@ pub(crate) use lattice::{height_in_circle, is_inner};
 pub use residual_sum::{GridResidual, ResidualSum, VISIBLE};
 pub use shape::{GridShape, GridShapeError};
 pub use values::RowValues;
-pub(crate) use values::{RowNodes, curve, rounded};
+pub(crate) use values::{RowNodes, curve, q_of_grid};
 
 use crate::{Geometry, RowFactor};
 

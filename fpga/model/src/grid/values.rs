@@ -124,7 +124,7 @@ impl RowValues {
     /// May panic when the row has no such column.
     #[must_use]
     pub fn source(&self, column: usize) -> Source {
-        locate(rounded(self.coordinate(column)) & ((1 << (COORDINATE_BITS - BELOW)) - 1), column)
+        locate(q_of_grid(self.coordinate(column)) & ((1 << (COORDINATE_BITS - BELOW)) - 1), column)
     }
 
     /// The output column at which the source column `source` appears: between two columns, or beyond the row's end at the rate
@@ -145,7 +145,7 @@ impl RowValues {
     }
 }
 
-/// q: S rounded to 2^-13 column.
-pub(crate) fn rounded(coordinate: i64) -> i64 {
+/// q, in units of 2^-13 column, of an S of datapath 2, which is in units of 2^-28 column.
+pub(crate) fn q_of_grid(coordinate: i64) -> i64 {
     (coordinate + (1 << (BELOW - 1))) >> BELOW
 }

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::fast::{any_kernel, paths, samples};
 use crate::grid::{any_grid, shape};
-use crate::grid_golden::drawn;
+use crate::grid_golden::{Drawn, drawn};
 
 /// The sources of a row, a and x of every column: those of the oracle and those of `corrector`.
 fn both(corrector: &Corrector, tables: &TableSet, row: usize) -> [(Vec<i16>, Vec<u16>); 2] {
@@ -70,8 +70,8 @@ fn every_path_finds_the_sources_at_all_ends_of_a_row() {
     for width in (64..=260).step_by(2) {
         for k in [5, 6] {
             let geometry = Geometry::centred(width, 3, BitDepth::Twelve).unwrap();
-            for narrow in [true, false] {
-                check_sources(&drawn(geometry, shape(1, k), width as u32, narrow), &[0, 1, 2]);
+            for kind in [Drawn::Narrow, Drawn::Wide] {
+                check_sources(&drawn(geometry, shape(1, k), width as u32, kind), &[0, 1, 2]);
             }
         }
     }
