@@ -1,6 +1,5 @@
 //! A folder that is written aside.
 
-use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,8 +11,6 @@ use super::{folder_of, rename, settle, sync_folder};
 
 /// How often a place is checked again if it changes between two checks.
 const LOOKS: usize = 100;
-/// The end of the name that what is replaced has while it is out of the way, on file systems where folders cannot be swapped.
-const EARLIER: &str = ".earlier";
 
 /// A folder with a name of our own, beside the place that it is for. It is removed, with everything in it, unless it is put in
 /// its place.
@@ -29,8 +26,8 @@ pub struct AsideFolder {
 /// A folder that was not put in its place.
 #[derive(Debug)]
 pub enum Misplaced {
-    /// Something is there that may not be replaced: the reason, or none if nothing may be replaced.
-    Taken(Option<String>),
+    /// Something is there that may not be replaced: the reason.
+    Taken(String),
     /// The system's reason.
     Io(io::Error),
 }
@@ -78,17 +75,6 @@ impl AsideFolder {
         }
     }
 
-    /// Renames it into its place, which must be free.
-    ///
-    /// # Errors
-    /// [`Misplaced`]
-    pub fn put_in_place(self) -> Result<(), Misplaced> {
-        sync_folder(self.path())?;
-        self.moved()?;
-        self.done();
-        Ok(())
-    }
-
     /// Renames it into its place. What is there is removed, unless `foreign` returns a reason why it may not be, or cannot look.
     ///
     /// # Errors
@@ -96,16 +82,16 @@ impl AsideFolder {
     pub fn replace(self, foreign: impl Fn(&Path) -> io::Result<Option<String>>) -> Result<(), Misplaced> {
         sync_folder(self.path())?;
         for _ in 0..LOOKS {
-            match self.moved() {
-                Err(Misplaced::Taken(_)) => {}
-                Err(error) => return Err(error),
+            match rename::to_new(self.path(), &self.target) {
                 Ok(()) => {
                     self.done();
                     return Ok(());
                 }
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error.into()),
             }
             if let Some(why) = foreign(&self.target)? {
-                return Err(Misplaced::Taken(Some(why)));
+                return Err(Misplaced::Taken(why));
             }
             match rename::swap(self.path(), &self.target) {
                 Ok(()) => return self.drop_earlier(foreign),
@@ -118,14 +104,7 @@ impl AsideFolder {
                 Err(error) => return Err(error.into()),
             }
         }
-        Err(Misplaced::Taken(Some("it is replaced all the time".to_owned())))
-    }
-
-    fn moved(&self) -> Result<(), Misplaced> {
-        rename::to_new(self.path(), &self.target).map_err(|error| match error.kind() {
-            io::ErrorKind::AlreadyExists => Misplaced::Taken(None),
-            _ => Misplaced::Io(error),
-        })
+        Err(Misplaced::Taken("it is replaced all the time".to_owned()))
     }
 
     /// Removes what was swapped out, unless somebody put something else there between the check and the swap.
@@ -143,8 +122,7 @@ impl AsideFolder {
         let back =
             rename::swap(self.path(), &self.target).or_else(|_| rename::to_new(self.path(), &self.target));
         if back.is_err() {
-            // Under the name that it has now, a later run would remove it.
-            let _ = under_way::to_free_name(self.path(), &earlier(&self.target));
+            let _ = under_way::spare(self.path(), &self.target);
             self.dir.keep();
         }
         back
@@ -169,9 +147,9 @@ impl AsideFolder {
         Ok(())
     }
 
-    /// Renames what is in the place to NAME.earlier beside it, where a user finds it if this run is killed then.
+    /// Renames what is in the place to the name of an earlier one, under which a user finds it if this run is killed then.
     fn move_away(&self) -> io::Result<PathBuf> {
-        under_way::to_free_name(&self.target, &earlier(&self.target))
+        under_way::spare(&self.target, &self.target)
     }
 
     fn done(self) {
@@ -184,13 +162,7 @@ impl AsideFolder {
 
 /// Why what a caller has looked at may not be removed; none if it may be.
 fn kept_by(looked: io::Result<Option<String>>) -> Option<Misplaced> {
-    looked.map_or_else(|error| Some(error.into()), |why| why.map(|why| Misplaced::Taken(Some(why))))
-}
-
-/// The name of what was in the place `target`, while it is out of the way.
-pub(super) fn earlier(target: &Path) -> OsString {
-    let name = under_way::shortened(target.file_name().unwrap_or_default());
-    [name, OsStr::new(EARLIER)].into_iter().collect()
+    looked.map_or_else(|error| Some(error.into()), |why| why.map(Misplaced::Taken))
 }
 
 #[cfg(test)]
@@ -210,6 +182,11 @@ mod tests {
         aside
     }
 
+    /// Puts a folder with a text in it at `target`.
+    fn put(target: &Path, text: &str) {
+        aside(target, text).replace(|_| Ok(None)).unwrap();
+    }
+
     fn entries(folder: &Path) -> usize {
         fs::read_dir(folder).unwrap().count()
     }
@@ -218,13 +195,11 @@ mod tests {
     fn what_is_there_is_replaced_whole_or_not_at_all() {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
-        aside(&target, "first").put_in_place().unwrap();
-        let taken = aside(&target, "second").put_in_place();
-        assert!(matches!(taken, Err(Misplaced::Taken(None))), "{taken:?}");
+        put(&target, "first");
         let kept = aside(&target, "third").replace(|_| Ok(Some("it is precious".to_owned())));
-        assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert!(matches!(kept, Err(Misplaced::Taken(_))), "{kept:?}");
         assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
-        aside(&target, "fourth").replace(|_| Ok(None)).unwrap();
+        put(&target, "fourth");
         assert_eq!((text(&target), entries(station.path())), ("fourth".to_owned(), 1));
     }
 
@@ -232,11 +207,11 @@ mod tests {
     fn what_came_between_the_look_and_the_swap_comes_back() {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
-        aside(&target, "first").put_in_place().unwrap();
+        put(&target, "first");
         // The second check is of what was swapped out.
         let changed = |path: &Path| Ok((path != target).then(|| "it is precious".to_owned()));
         let kept = aside(&target, "second").replace(changed);
-        assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert!(matches!(kept, Err(Misplaced::Taken(_))), "{kept:?}");
         assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
     }
 
@@ -244,7 +219,7 @@ mod tests {
     fn what_cannot_be_looked_at_after_the_swap_comes_back() {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
-        aside(&target, "first").put_in_place().unwrap();
+        put(&target, "first");
         let unread =
             |path: &Path| if path == target { Ok(None) } else { Err(io::ErrorKind::StorageFull.into()) };
         let kept = aside(&target, "second").replace(unread);
@@ -258,7 +233,7 @@ mod tests {
     fn what_came_meanwhile_is_not_removed_when_ours_has_left_its_place() {
         let station = TempDir::new().unwrap();
         let (target, moved) = (station.path().join("today"), station.path().join("moved"));
-        aside(&target, "first").put_in_place().unwrap();
+        put(&target, "first");
         let changed = |path: &Path| {
             Ok((path != target).then(|| {
                 fs::rename(&target, &moved).unwrap();
@@ -266,7 +241,7 @@ mod tests {
             }))
         };
         let kept = aside(&target, "second").replace(changed);
-        assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert!(matches!(kept, Err(Misplaced::Taken(_))), "{kept:?}");
         assert_eq!((text(&target), text(&moved)), ("first".to_owned(), "second".to_owned()));
         assert_eq!(entries(station.path()), 2);
     }
@@ -275,9 +250,9 @@ mod tests {
     fn where_folders_cannot_be_swapped_what_came_after_the_look_comes_back() {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
-        aside(&target, "first").put_in_place().unwrap();
+        put(&target, "first");
         let kept = aside(&target, "second").exchange(|_| Ok(Some("it is precious".to_owned())));
-        assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert!(matches!(kept, Err(Misplaced::Taken(_))), "{kept:?}");
         assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
     }
 
@@ -296,7 +271,7 @@ mod tests {
     fn where_folders_cannot_be_swapped_the_earlier_one_comes_back_when_the_new_one_is_not_taken() {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
-        aside(&target, "first").put_in_place().unwrap();
+        put(&target, "first");
         let second = aside(&target, "second");
         second.exchange(|_| Ok(None)).unwrap();
         second.done();

@@ -111,8 +111,8 @@ impl Aside {
     pub fn rename_into_place(mut self) -> Result<(), WriteAsideError> {
         let written = self.whole();
         let Self { out, path, overwrite, .. } = self;
-        let file = out.into_parts().0;
-        written.and_then(|()| place(file, &path, overwrite).map_err(|(error, _)| error))
+        let mut file = out.into_parts().0;
+        written.and_then(|()| place(&mut file, &path, overwrite))
     }
 
     /// Like [`Self::put_in_place`], but on an error keeps what there is under a name that is free.
@@ -122,12 +122,9 @@ impl Aside {
     pub fn put_in_place_or_keep(mut self) -> Result<(), Unfinished> {
         let written = self.whole();
         let Self { out, path, overwrite, .. } = self;
-        let file = out.into_parts().0;
-        let placed = match written {
-            Ok(()) => place(file, &path, overwrite),
-            Err(error) => Err((error, file)),
-        };
-        placed.map_err(|(source, file)| unfinished(file, &path, source))?;
+        let mut file = out.into_parts().0;
+        let placed = written.and_then(|()| place(&mut file, &path, overwrite));
+        placed.map_err(|source| unfinished(file, &path, source))?;
         settle(&path);
         Ok(())
     }
@@ -172,23 +169,21 @@ pub fn write_aside(
     Aside::written(path, overwrite, write)?.put_in_place()
 }
 
-/// Renames a file into its place. On an error, gives the file back.
-fn place(file: NamedTempFile, path: &Path, overwrite: bool) -> Result<(), (WriteAsideError, NamedTempFile)> {
-    if overwrite && let Err(error) = check(path, true) {
-        return Err((error, file));
+/// Renames a file into its place.
+fn place(file: &mut NamedTempFile, path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
+    if overwrite {
+        check(path, true)?;
     }
     let renamed = if overwrite { fs::rename(file.path(), path) } else { rename::to_new(file.path(), path) };
     let path = path.to_owned();
     match renamed {
         Ok(()) => {
             // It has its final name by now, and must not be removed on drop.
-            let _ = file.keep();
+            file.disable_cleanup(true);
             Ok(())
         }
-        Err(source) if source.kind() == io::ErrorKind::AlreadyExists => {
-            Err((WriteAsideError::Exists { path }, file))
-        }
-        Err(source) => Err((WriteAsideError::Io { path, source }, file)),
+        Err(source) if source.kind() == io::ErrorKind::AlreadyExists => Err(WriteAsideError::Exists { path }),
+        Err(source) => Err(WriteAsideError::Io { path, source }),
     }
 }
 

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::folder::earlier;
 use super::under_way::{self, Noted};
 use super::{Aside, WriteAsideError, check, place, rename, settle};
 
@@ -51,9 +50,9 @@ impl Placed {
     /// Of a file that is whole.
     fn by(file: Aside) -> Result<Self, WriteAsideError> {
         let Aside { out, path, overwrite, _noted: noted, .. } = file;
-        let aside = out.into_parts().0;
+        let mut aside = out.into_parts().0;
         if !overwrite {
-            place(aside, &path, false).map_err(|(error, _)| error)?;
+            place(&mut aside, &path, false)?;
             return Ok(Self { path, earlier: Earlier::Nothing });
         }
         check(&path, true)?;
@@ -61,7 +60,7 @@ impl Placed {
             Ok(()) => Ok(Self { path, earlier: Earlier::Aside(aside, noted) }),
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::Unsupported) => {
                 let earlier = if path.exists() { Earlier::Lost } else { Earlier::Nothing };
-                place(aside, &path, true).map_err(|(error, _)| error)?;
+                place(&mut aside, &path, true)?;
                 Ok(Self { path, earlier })
             }
             Err(source) => Err(WriteAsideError::Io { path, source }),
@@ -82,12 +81,11 @@ impl Placed {
 }
 
 /// Puts the earlier file back into its place.
-fn bring_back(file: NamedTempFile, path: &Path) -> io::Result<()> {
+fn bring_back(mut file: NamedTempFile, path: &Path) -> io::Result<()> {
     let back = rename::swap(file.path(), path);
     if back.is_err() {
-        // Under the name that it has now, a later run would remove it.
-        let _ = under_way::to_free_name(file.path(), &earlier(path));
-        let _ = file.keep();
+        let _ = under_way::spare(file.path(), path);
+        file.disable_cleanup(true);
     }
     back
 }

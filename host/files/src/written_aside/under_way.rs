@@ -28,6 +28,7 @@ const PREFIX: &str = ".halfrow-";
 const ASIDE: &str = ".aside";
 const PARTIAL: &str = ".partial";
 const CLAIM: &str = ".claim";
+const EARLIER: &str = ".earlier";
 /// How many characters of a name are drawn at random.
 const DRAWN: usize = 10;
 /// The most bytes of a name that go into one of ours, so that file systems accept it.
@@ -169,7 +170,7 @@ pub(super) fn claim_on(target: &Path) -> PathBuf {
 }
 
 /// The beginning of a name, short enough to append to.
-pub(super) fn shortened(name: &OsStr) -> &OsStr {
+fn shortened(name: &OsStr) -> &OsStr {
     OsStr::from_bytes(&name.as_bytes()[..name.len().min(LONGEST)])
 }
 
@@ -239,8 +240,15 @@ pub(super) fn kept(path: &Path) -> io::Result<PathBuf> {
     to_free_name(path, OsStr::from_bytes(name.get(PREFIX.len() + DRAWN + 1..).unwrap_or(name)))
 }
 
+/// Renames what was in the place `target`, and is at `path` now, to NAME.earlier, with a number if that is taken. Under a name of
+/// ours a later run would remove it.
+pub(super) fn spare(path: &Path, target: &Path) -> io::Result<PathBuf> {
+    let name = shortened(target.file_name().unwrap_or_default());
+    to_free_name(path, &[name, OsStr::new(EARLIER)].into_iter().collect::<OsString>())
+}
+
 /// Renames `path` to `name` in the same folder, with a number if that is taken.
-pub(super) fn to_free_name(path: &Path, name: &OsStr) -> io::Result<PathBuf> {
+fn to_free_name(path: &Path, name: &OsStr) -> io::Result<PathBuf> {
     for number in 1..1000 {
         let mut name = name.to_owned();
         if number > 1 {

@@ -162,7 +162,7 @@ impl ReportFolder {
         let occupied = |path: &Path| Ok((!is_empty(path)?).then(String::new));
         let placed = if overwrite { aside.replace(foreign) } else { aside.replace(occupied) };
         placed.map_err(|misplaced| match misplaced {
-            Misplaced::Taken(Some(why)) if overwrite => ReportError::NotAReport { path, why },
+            Misplaced::Taken(why) if overwrite => ReportError::NotAReport { path, why },
             Misplaced::Taken(_) => ReportError::Exists { path },
             Misplaced::Io(source) => ReportError::Place { path, source },
         })

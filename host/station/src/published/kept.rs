@@ -119,7 +119,7 @@ impl KeptPlans {
         fill(aside.path())?;
         aside.replace(|_| Ok(None)).map_err(|misplaced| match misplaced {
             Misplaced::Io(source) => refused(source),
-            Misplaced::Taken(why) => refused(io::Error::other(why.unwrap_or_default())),
+            Misplaced::Taken(why) => refused(io::Error::other(why)),
         })?;
         Ok(())
     }
