@@ -206,7 +206,7 @@ impl BoardArguments {
 
     pub(crate) fn open_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
         Ok(OpenOptions {
-            when_held: if self.take_over { WhenHeld::Take } else { WhenHeld::TakeFromKilled },
+            when_held: WhenHeld::wanted(self.take_over),
             retry_limit: self.retry_limit(settings),
             stop: self.stop(settings)?.link_limit(self.timeout(settings)?),
             ..OpenOptions::default()

@@ -335,8 +335,8 @@ fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) ->
 
 fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
     let hello = Hello {
-        nonce: options.nonce,
-        host: options.host,
+        nonce: options.ids.nonce,
+        host: options.ids.host,
         version_min: VERSION,
         version_max: VERSION,
         take_over: options.when_held == WhenHeld::Take,

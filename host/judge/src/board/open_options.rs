@@ -2,16 +2,11 @@
 
 use super::{RetryLimit, SessionIds, Stop};
 
-/// How a session is opened. The default draws a nonce, a host number and a sequence number, so that sessions differ.
-#[derive(Clone, Debug)]
+/// How a session is opened.
+#[derive(Clone, Debug, Default)]
 pub struct OpenOptions {
-    /// The session's nonce, drawn at random.
-    pub nonce: u32,
-    /// The number of this host, drawn at random once per run of the program.
-    pub host: u32,
-    /// The sequence number before that of the first packet, drawn at random too. A refusal names no nonce, so one that is still
-    /// under way to an earlier program must not match by its number.
-    pub sequence: u16,
+    /// What tells its packets from those of another one.
+    pub ids: SessionIds,
     /// What to do if another host holds the board.
     pub when_held: WhenHeld,
     /// After every stream, and after every request that was repeated, ask the board how many packets it received. This tells a
@@ -36,22 +31,10 @@ pub enum WhenHeld {
     Take,
 }
 
-impl From<SessionIds> for OpenOptions {
-    fn from(SessionIds { nonce, host, sequence }: SessionIds) -> Self {
-        Self {
-            nonce,
-            host,
-            sequence,
-            when_held: WhenHeld::default(),
-            counts: false,
-            retry_limit: RetryLimit::default(),
-            stop: Stop::default(),
-        }
-    }
-}
-
-impl Default for OpenOptions {
-    fn default() -> Self {
-        SessionIds::default().into()
+impl WhenHeld {
+    /// What whoever starts a run wants, who may have asked that the board be taken from anybody.
+    #[must_use]
+    pub const fn wanted(take_over: bool) -> Self {
+        if take_over { Self::Take } else { Self::TakeFromKilled }
     }
 }

@@ -7,7 +7,8 @@ pub struct SessionIds {
     pub nonce: u32,
     /// The number of this host.
     pub host: u32,
-    /// The sequence number before that of the first packet. 0 in a recording that does not say, so that its packets begin with 1.
+    /// The sequence number before that of the first packet. A refusal names no nonce, so one that is still under way to an
+    /// earlier program must not match by its number. 0 in a recording that does not say, so that its packets begin with 1.
     #[serde(default)]
     pub sequence: u16,
 }

@@ -10,7 +10,9 @@ use super::by_hand::{Response, said};
 use super::counted::Counted;
 use super::deadlines::Step;
 use super::sent_requests::Outgoing;
-use super::{Board, BoardError, OpenOptions, VERSION, WhenHeld, greet, greet_or_take_over, is_for};
+use super::{
+    Board, BoardError, OpenOptions, SessionIds, VERSION, WhenHeld, greet, greet_or_take_over, is_for,
+};
 
 impl Board {
     /// Number of the open session.
@@ -41,7 +43,7 @@ impl Board {
     }
 
     fn open_by(&mut self, nonce: u32, when_held: WhenHeld) -> Result<(), BoardError> {
-        (self.options.nonce, self.options.when_held) = (nonce, when_held);
+        (self.options.ids.nonce, self.options.when_held) = (nonce, when_held);
         self.conversation.leave_session();
         self.welcome = greet_or_take_over(&mut self.conversation, &self.options)?;
         Ok(())
@@ -91,7 +93,7 @@ impl Board {
     }
 
     fn hello_of_another_host(&self) -> Hello {
-        Hello { host: !self.options.host, ..self.hello_aside([VERSION; 2]) }
+        Hello { host: !self.options.ids.host, ..self.hello_aside([VERSION; 2]) }
     }
 
     /// Greets the board as its holder, which wants another session and speaks these versions, from the least to the greatest.
@@ -106,7 +108,7 @@ impl Board {
 
     /// The holder's greeting for another session than the open one.
     fn hello_aside(&self, [version_min, version_max]: [u8; 2]) -> Hello {
-        let OpenOptions { nonce, host, .. } = self.options;
+        let SessionIds { nonce, host, .. } = self.options.ids;
         Hello { nonce: !nonce, host, version_min, version_max, take_over: false }
     }
 

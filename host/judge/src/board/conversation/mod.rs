@@ -110,7 +110,7 @@ impl Conversation {
             decoder: Decoder::new(),
             outgoing: Vec::new(),
             incoming: Vec::new(),
-            sequence: options.sequence,
+            sequence: options.ids.sequence,
             session: Session::default(),
             tally: Tally::default(),
             before: Received::default(),

@@ -7,7 +7,7 @@ pub(super) mod window;
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use crate::board::{Board, BoardError, OpenFailed, OpenOptions, RetryLimit, Tally, WhenHeld};
+use crate::board::{Board, BoardError, OpenFailed, OpenOptions, RetryLimit, SessionIds, Tally, WhenHeld};
 use crate::link::{Link, OpenError, Reopener};
 use crate::result::{CheckName, Finding, LinkReport, Problem, Reconnection};
 use crate::run::RunOptions;
@@ -64,11 +64,11 @@ impl Sessions {
             reopen,
             patience: options.reconnect,
             options: OpenOptions {
-                when_held: if options.take_over { WhenHeld::Take } else { WhenHeld::TakeFromKilled },
+                ids: options.provenance.session_ids,
+                when_held: WhenHeld::wanted(options.take_over),
                 counts: options.counts,
                 retry_limit: options.retry_limit,
                 stop: options.stop.clone().link_limit(options.timeout),
-                ..options.provenance.session_ids.into()
             },
             opened: 0,
             reopened: 0,
@@ -112,7 +112,7 @@ impl Sessions {
         end: &End,
     ) -> Result<bool, End> {
         self.earlier.add(board.tally(), board.now());
-        self.options.sequence = board.sequence();
+        self.options.ids.sequence = board.sequence();
         // The old link, if still open, would keep the new one from being opened.
         board.hang_up();
         let back = self.open_again(patience, end)?;
@@ -173,10 +173,11 @@ impl Sessions {
         // A board that never lost power must not take this HELLO for one that it has already answered, nor this host a late
         // refusal for the answer to it.
         self.reopened += 1;
-        let nonce = self.options.nonce.wrapping_add(self.reopened);
-        let sequence = self.options.sequence.wrapping_add((self.reopened as u16).wrapping_mul(NUMBERS));
-        let stop = self.options.stop.after(spent);
-        let options = OpenOptions { nonce, sequence, stop, ..self.options.clone() };
+        let SessionIds { nonce, host, sequence } = self.options.ids;
+        let nonce = nonce.wrapping_add(self.reopened);
+        let sequence = sequence.wrapping_add((self.reopened as u16).wrapping_mul(NUMBERS));
+        let ids = SessionIds { nonce, host, sequence };
+        let options = OpenOptions { ids, stop: self.options.stop.after(spent), ..self.options.clone() };
         Board::open_any(link, &options).map_err(|OpenFailed { error, .. }| {
             tracing::debug!("not there yet: {error}");
             error.shows_device().then(|| Box::new(End::board(CheckName::Identity, &error)))
@@ -195,7 +196,7 @@ impl Sessions {
     /// The nonce of the session in which everything is done again, for the `look`th time from 1. In it, copies of earlier
     /// sessions' requests have no effect.
     pub(crate) fn nonce_of(&self, look: u32) -> u32 {
-        self.options.nonce.wrapping_add(NONCE + look)
+        self.options.ids.nonce.wrapping_add(NONCE + look)
     }
 
     /// The nonce of a further such session within the same look.
