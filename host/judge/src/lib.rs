@@ -8,7 +8,8 @@
 //!
 //! A program describes what to judge in a [`Plan`], opens a link to a board or brings a [`Candidate`] with a link of its own, and
 //! calls [`verify`] with [`RunOptions`]. This returns [`Finished`], which holds a [`Report`] with a [`Verdict`] and its
-//! [`Cause`]; [`Finished::commit`] writes it to disk. A run takes one thread, and reports what it does to a [`Progress`]. The
+//! [`Cause`]; [`Finished::commit`] writes it to disk. A run takes the calling thread and one that
+//! computes ahead of the board, and reports what it does to a [`Progress`]. The
 //! frames that it keeps have a budget, [`RunOptions::evidence_bytes`], so its memory does not grow with the number of frames,
 //! except for some hundred bytes each in the report.
 //!

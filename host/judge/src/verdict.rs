@@ -127,19 +127,6 @@ impl Cause {
     }
 }
 
-impl StoppedBy {
-    /// Its name: stable, lower case.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Person => "person",
-            Self::System => "system",
-            Self::Disconnection => "disconnection",
-            Self::Caller => "caller",
-        }
-    }
-}
-
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())

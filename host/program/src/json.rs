@@ -1,7 +1,6 @@
 //! JSON documents as both programs print them.
 
 use halfrow::result::{Document, Problem, Schema};
-use halfrow::verdict::Verdict;
 use serde::Serialize;
 
 use crate::exit::Exit;
@@ -15,11 +14,18 @@ pub fn document(document: &Document<'_, impl Serialize>) -> Result<String, serde
     serde_json::to_string_pretty(&serde_json::to_value(document)?)
 }
 
-/// The document of a command that failed, as indented JSON.
+/// The document of a command that failed without a verdict, as indented JSON.
 #[must_use]
-pub fn without_result(command: &str, exit: Exit, verdict: Option<Verdict>, problem: &Problem) -> String {
-    let (schema, error) = (Schema, Some(problem));
-    let failed = Document { schema, command, verdict, exit_code: exit, board: None, error, rest: Nothing {} };
+pub fn without_result(command: &str, exit: Exit, problem: &Problem) -> String {
+    let failed = Document {
+        schema: Schema,
+        command,
+        verdict: None,
+        exit_code: exit,
+        board: None,
+        error: Some(problem),
+        rest: Nothing {},
+    };
     document(&failed).unwrap_or_default()
 }
 

@@ -84,5 +84,5 @@ pub fn tell(told: &clap::Error, program: &Command, built: Built) -> Result<Exit,
 fn document(told: &clap::Error, program: &Command, options: &[String]) -> String {
     let known = |name: &&String| program.find_subcommand(name).is_some();
     let command = options.iter().find(known).map_or(program.get_name(), String::as_str);
-    json::without_result(command, Exit::Usage, None, &usage::problem(told, program))
+    json::without_result(command, Exit::Usage, &usage::problem(told, program))
 }

@@ -17,6 +17,7 @@ fn the_folder_holds_the_report_in_three_views() {
     assert_eq!(folder.names("out"), FILES);
     let written = folder.json("out/report.json");
     assert_eq!(written, ended.json());
+    assert_eq!(folder.text("out/report.json"), ended.stdout);
     assert!(folder.text("out/report.html").contains("PASS"));
     let junit = folder.text("out/report.xml");
     assert!(junit.starts_with("<?xml") && junit.contains("<testcase name="), "{junit}");

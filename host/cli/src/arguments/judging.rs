@@ -268,7 +268,7 @@ fn judge_and_report(
     lacks.iter().flatten().for_each(tell);
     let report = &finished.report;
     if context.json {
-        console::tell(&report::json(report).map_err(Failure::error)?);
+        console::tell(report::json(report).map_err(Failure::error)?.trim_end());
     } else {
         console::tell(text::render(report).trim_end());
     }

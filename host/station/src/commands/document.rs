@@ -26,7 +26,7 @@ pub(super) const IN_LINES: &str = "work";
 /// The document of a command that failed. It has no verdict, because none was saved.
 #[must_use]
 pub fn failure(command: &str, failure: &Failure) -> String {
-    let indented = json::without_result(command, failure.exit, None, &failure.problem());
+    let indented = json::without_result(command, failure.exit, &failure.problem());
     if command != IN_LINES {
         return indented;
     }

@@ -28,12 +28,27 @@ macro_rules! as_they_are {
         }
     })+ };
 }
-as_they_are!(u8, u16, u32, u64, usize, i32, i64, f64, bool, String, &'static str, Box<Errors>);
+as_they_are!(
+    u8,
+    u16,
+    u32,
+    u64,
+    usize,
+    i32,
+    i64,
+    f64,
+    bool,
+    String,
+    &'static str,
+    Box<Errors>,
+    StoppedBy,
+    UsbBoard
+);
 
 /// Implements [`Parameter`] for types that are written as their text.
 macro_rules! by_words {
-    ($($kind:ty),+ $(,)?) => { $(impl $crate::result::codes::Parameter for $kind {
-        fn parameter(&self) -> serde_json::Value {
+    ($($kind:ty),+ $(,)?) => { $(impl Parameter for $kind {
+        fn parameter(&self) -> Value {
             self.to_string().into()
         }
     })+ };
@@ -64,12 +79,6 @@ impl<T: Parameter> Parameter for Option<T> {
     }
 }
 
-impl Parameter for UsbBoard {
-    fn parameter(&self) -> Value {
-        json!(self)
-    }
-}
-
 impl Parameter for Kind {
     fn parameter(&self) -> Value {
         self.name().into()
@@ -91,12 +100,6 @@ impl Parameter for RowPlace {
 impl Parameter for BitDepth {
     fn parameter(&self) -> Value {
         self.bits().into()
-    }
-}
-
-impl Parameter for StoppedBy {
-    fn parameter(&self) -> Value {
-        self.name().into()
     }
 }
 
