@@ -21,9 +21,7 @@ use crate::console;
 use crate::exit::Exit;
 use crate::said::Said;
 use crate::settings::moving;
-use crate::store::{
-    Plant, PlantAddress, PlantLink, PlantPool, SharedBoard, StoreError, Turn, Waiter, boards,
-};
+use crate::store::{Plant, PlantAddress, PlantLink, SharedBoard, StoreError, Turn, Waiter, boards};
 use crate::trust::is_near;
 use crate::work::{Held, Holding, sleep_unless};
 
@@ -177,7 +175,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             shared(&mut at_plant(&address, &share.operator, &format!("board share {}", share.name))?, share)
         }
         Action::List { json } => {
-            let found = PlantPool::new(address).look(boards)?;
+            let found = PlantLink::new(address).look(boards)?;
             either(&found, *json, |found| text(found))
         }
         Action::Out(Change { name, why }) => {

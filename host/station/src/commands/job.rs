@@ -13,7 +13,7 @@ use crate::console;
 use crate::exit::Exit;
 use crate::plan::Plan;
 use crate::settings::is_word;
-use crate::store::{Job, JobState, NewJob, PlantAddress, PlantPool, SharedBoard, Wanted, boards, jobs};
+use crate::store::{Job, JobState, NewJob, PlantAddress, PlantLink, SharedBoard, Wanted, boards, jobs};
 
 /// How many jobs are listed unless the command says otherwise.
 const LISTED: u32 = 100;
@@ -124,7 +124,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
                 Some(state) => vec![*state],
                 None => vec![JobState::Waiting, JobState::Claimed, JobState::Dead],
             };
-            let found = PlantPool::new(address).look(|now| jobs(now, &states, "", *most))?;
+            let found = PlantLink::new(address).look(|now| jobs(now, &states, "", *most))?;
             either(&found, *json, |found| text(found))
         }
         Action::Cancel(Change { id, why }) => {
@@ -172,7 +172,7 @@ fn add_jobs(address: &PlantAddress, add: &Add) -> Result<Exit, Failure> {
 /// Warns of jobs for boards of a kind of which no unit of the product is shared.
 fn warn_of_no_board(address: &PlantAddress, kind: &str, product: &str) -> Result<(), Failure> {
     let would_do = |board: &SharedBoard| board.kind == kind && board.product == product;
-    if !PlantPool::new(address.clone()).look(boards)?.iter().any(would_do) {
+    if !PlantLink::new(address.clone()).look(boards)?.iter().any(would_do) {
         console::diagnose(&format_args!(
             "warning: no board of the kind {kind} is shared as a unit of {product}; jobs for one wait until one is: \
              `halfrow-station board list` shows what is shared"

@@ -15,7 +15,7 @@ use crate::exit::Exit;
 use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::published::{Bundle, PublicKey, Signed, SigningKey, Statement, look_whole};
-use crate::store::{Plant, PlantPool, publications};
+use crate::store::{Plant, PlantLink, publications};
 
 /// Publish a plan with its files at the plant: every station that names it takes it when it starts next
 #[derive(Debug, Args)]
@@ -208,7 +208,7 @@ impl Desk<'_> {
 
 pub(super) fn list(List { settings, json }: &List) -> Result<Exit, Failure> {
     let address = address(&published(settings)?)?;
-    let found = PlantPool::new(address).look(publications)?;
+    let found = PlantLink::new(address).look(publications)?;
     let found: Vec<_> = found.into_iter().map(|(statement, at_ms)| Holds { statement, at_ms }).collect();
     either(&found, *json, |found| text(found))
 }

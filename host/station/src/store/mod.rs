@@ -57,7 +57,7 @@ pub use plant::{
     PlantLink, SharedBoard, Told, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
 };
 pub(crate) use plant::{
-    JobsInState, KeptRun, LEASE_MS, PlantPool, SILENT_MS, dead_jobs, open_jobs, publications, waiters,
+    JobsInState, KeptRun, LEASE_MS, SILENT_MS, dead_jobs, open_jobs, publications, waiters,
 };
 pub(crate) use reason::MOST_REASON;
 pub use reason::{Reason, ReasonError};

@@ -20,7 +20,7 @@ use crate::plan::Plan;
 use crate::said::Said;
 use crate::secret::SecretError;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Deed, Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError};
+use crate::store::{Deed, Folder, PlantAddress, PlantLink, Snapshot, Store, StoreError};
 
 /// How many plans are named in the head of a page.
 const NAMED: usize = 2;
@@ -51,7 +51,7 @@ struct Parts {
 #[derive(Debug)]
 enum Source {
     Station(Lanes),
-    Plant(PlantPool),
+    Plant(PlantLink),
 }
 
 /// The lanes of a station, at work.
@@ -94,7 +94,7 @@ impl App {
     /// The results of all stations of the plant at `address`.
     #[must_use]
     pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
-        let source = Source::Plant(PlantPool::new(address));
+        let source = Source::Plant(PlantLink::new(address));
         let (plans, mark, turns) = (String::new(), String::new(), Turns::new(false, RESTS));
         Self(Arc::new(Parts { settings, access, plans, mark, turns, source, unaudited: Mutex::default() }))
     }
@@ -185,10 +185,10 @@ impl App {
                 };
                 self.change(visit, note).await?
             }
-            Source::Plant(pool) => {
-                let pool = pool.clone();
+            Source::Plant(plant) => {
+                let plant = plant.clone();
                 let note =
-                    move || pool.note(Deed { operator: &operator, act, subject: &subject, detail: &detail });
+                    move || plant.note(Deed { operator: &operator, act, subject: &subject, detail: &detail });
                 self.blocking(visit, note).await?
             }
         };
@@ -239,9 +239,9 @@ impl App {
                 let folder = Folder::new(&self.0.settings.data);
                 self.blocking(visit, move || Snapshot::at_work(&folder).and_then(|now| look(&now))).await
             }
-            Source::Plant(pool) => {
-                let pool = pool.clone();
-                self.blocking(visit, move || pool.look(look)).await
+            Source::Plant(plant) => {
+                let plant = plant.clone();
+                self.blocking(visit, move || plant.look(look)).await
             }
         }
     }

@@ -7,12 +7,10 @@ mod address;
 pub(super) mod arrived;
 mod audit;
 mod boards;
-mod idle;
 mod jobs;
 mod kept;
 mod link;
 mod plans;
-mod pool;
 mod prune;
 
 pub use address::{PlantAddress, PlantAddressError};
@@ -23,7 +21,6 @@ pub(crate) use jobs::{JobsInState, dead_jobs, open_jobs};
 pub(crate) use kept::KeptRun;
 pub use link::PlantLink;
 pub(crate) use plans::publications;
-pub(crate) use pool::PlantPool;
 
 use std::path::PathBuf;
 use std::sync::Arc;
