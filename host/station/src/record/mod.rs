@@ -2,6 +2,7 @@
 
 mod blobs;
 mod conclude;
+mod ended;
 mod measured;
 mod not_exercised;
 mod step;

@@ -29,7 +29,7 @@ use crate::plan::serial::{Serial, SerialError};
 use crate::plan::{Plan, Selected, changed, mock};
 use crate::record::{
     Attachment, Blobs, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead,
-    SCHEMA, StepRecord, SuspectRecord, judged,
+    StepRecord, SuspectRecord, judged,
 };
 use crate::said::{Said, Saying};
 use crate::store::{Admission, Folder, SharedStore, StoreError, Stored};
@@ -284,10 +284,7 @@ fn record(
     (heard, device): (LaneReport, DeviceSeen),
     took: Duration,
 ) -> Record {
-    let LaneReport { mut steps, took: stepped, end } = heard;
-    // The clock may have been set back meanwhile.
-    let ended_ms = clock::now_ms().max(run.started_ms);
-    let seconds = took.as_secs_f64();
+    let LaneReport { steps, took: stepped, end } = heard;
     let stepped = [("run.seconds", stepped.map(|took| took.as_secs_f64()))];
     // Without any step there was nothing to measure, and how the lane ended says more.
     let measurements =
@@ -296,28 +293,16 @@ fn record(
         .note_unchecked_identity(device);
     let suspects = if conclusion.disbelieves_steps() { Vec::new() } else { last_suspects(&steps) };
     let reached = steps.last().map_or(0, |step| step.seq);
-    let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
-    steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));
-    let board = steps.iter().find_map(|step| step.board.clone());
-    // A board that never identified itself may be a product.
-    let is_hardware = board.as_ref().is_none_or(BoardSeen::is_hardware);
-    Record {
-        schema: SCHEMA,
-        run,
-        ended_ms,
-        seconds: Some(seconds),
-        conclusion,
-        plan,
-        production: order.counts && is_hardware,
-        marginal: steps.iter().any(|step| step.attempt > 1),
-        board,
+    let mut record = Record {
+        seconds: Some(took.as_secs_f64()),
         device,
         suspects,
-        steps,
         measurements,
-        attachments: Vec::new(),
-        program: halfrow::VERSION.to_owned(),
-    }
+        ..Record::of(run, plan, steps, conclusion, order.counts)
+    };
+    let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
+    record.steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, record.ended_ms)));
+    record
 }
 
 /// The conclusion that follows from the lane's end alone.

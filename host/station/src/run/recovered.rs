@@ -13,8 +13,7 @@ use crate::lane::Message;
 use crate::lane::supervisor::{EVENTS, kill_left_behind, left_behind};
 use crate::plan::Production;
 use crate::record::{
-    BlobError, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead, SCHEMA,
-    StepRecord, made_within,
+    BlobError, Conclusion, JobClaim, PlanRecord, Record, RunCause, RunHead, StepRecord, made_within,
 };
 use crate::said::Saying;
 use crate::store::{Folder, InLane, OpenRun, SharedStore, Snapshot, Store, StoreError, Stored};
@@ -172,28 +171,12 @@ fn closed(
     let run = RunHead { job: noted_claim(&spool), ..run };
     kill_left_behind(&spool);
     let steps = told(&spool);
-    let why = why(steps.len());
-    let board = steps.iter().find_map(|step| step.board.clone());
+    let conclusion = Conclusion::error(RunCause::Crash, why(steps.len()));
     let counted = counts(folder, &run, &plan_sha256, &text);
     let unsaved = |source| RunError::Unsaved { run: run.id.clone(), source: Box::new(source) };
     let counts = counted.map_err(unsaved)?;
-    let record = Record {
-        schema: SCHEMA,
-        ended_ms: clock::now_ms().max(run.started_ms),
-        seconds: None,
-        conclusion: Conclusion::error(RunCause::Crash, why),
-        production: counts && board.as_ref().is_none_or(BoardSeen::is_hardware),
-        plan: PlanRecord { sha256: plan_sha256, name, version, text, files: None },
-        marginal: steps.iter().any(|step| step.attempt > 1),
-        board,
-        device: DeviceSeen::NotChecked,
-        suspects: Vec::new(),
-        steps,
-        measurements: Vec::new(),
-        attachments: Vec::new(),
-        program: halfrow::VERSION.to_owned(),
-        run,
-    };
+    let plan = PlanRecord { sha256: plan_sha256, name, version, text, files: None };
+    let record = Record::of(run, plan, steps, conclusion, counts);
     save(folder, record, attached_as_can_be, finish)
 }
 
