@@ -7,12 +7,12 @@ use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
 use halfrow::result::sha256;
-use nix::sys::statvfs::statvfs;
 
 use super::database::{Database, DatabaseError, Engine, values};
 use super::folder::log_of;
 use super::statements::{PLAN_TEXTS, SCHEMA_VERSION, SCHEMAS, UNCOUNT_UNIT};
 use super::{StoreError, generation};
+use crate::disk::Room;
 use crate::plan::Production;
 use crate::record::synced;
 
@@ -120,9 +120,8 @@ fn refuse_newer(path: &Path, found: i64) -> Result<(), StoreError> {
 fn refuse_full_disk(path: &Path) -> Result<(), StoreError> {
     let folder = path.parent().unwrap_or(path);
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
-    let disk = statvfs(folder).map_err(|error| refused(error.into()))?;
     // Some file systems do not report it.
-    let free = (disk.blocks() > 0).then(|| disk.blocks_available() * disk.fragment_size());
+    let free = Room::of(folder).filter(|room| room.size() > 0).map(|room| room.free);
     // Where there is no log, it has no bytes.
     let log = fs::metadata(log_of(path)).map_or(0, |log| log.len());
     let bytes = fs::metadata(path).map_err(refused)?.len() + log;
