@@ -9,7 +9,7 @@ use super::{Failure, tell_lines};
 use crate::console;
 use crate::exit::Exit;
 use crate::guard::guarded;
-use crate::history::PlanName;
+use crate::plan::PlanName;
 use crate::published::{FetchError, Fetched, KeptPlans, Offer, Statement, offered};
 use crate::said::Said;
 use crate::settings::{PlansOfPlant, Settings};

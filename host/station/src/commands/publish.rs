@@ -12,8 +12,7 @@ use super::looking::{either, table, time};
 use super::why::{Why, entered_at};
 use super::{Failure, print, tell};
 use crate::exit::Exit;
-use crate::history::PlanName;
-use crate::plan::Plan;
+use crate::plan::{Plan, PlanName};
 use crate::published::{Bundle, PublicKey, Signed, SigningKey, Statement, look_whole};
 use crate::store::{Plant, PlantLink, publications};
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use parking_lot::Mutex;
 
 use super::logged::reasons;
-use crate::history::PlanName;
+use crate::plan::PlanName;
 use crate::record::Record;
 use crate::settings::{LaneSettings, Settings};
 

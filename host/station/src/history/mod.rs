@@ -28,13 +28,11 @@ pub mod unit;
 pub mod yields;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 use jiff::civil::Date;
 use jiff::{Timestamp, ToSpan as _, tz::TimeZone};
-use serde::Serialize;
 
-use crate::plan::Plan;
+use crate::plan::PlanName;
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements};
 
 /// The time in which runs began, in milliseconds since 1970, UTC.
@@ -65,27 +63,6 @@ pub(crate) fn moment(text: &str, days: i64) -> Option<i64> {
     let date = || Date::strptime("%Y-%m-%d", text).and_then(midnight).map(|zoned| zoned.timestamp());
     let moment = text.parse::<Timestamp>().or_else(|_| date());
     moment.map(Timestamp::as_millisecond).ok().filter(|ms| *ms >= 0)
-}
-
-/// What is compared: a product under plans of one name, whatever their version.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct PlanName {
-    /// The product.
-    pub product: String,
-    /// The plan's name.
-    pub plan: String,
-}
-
-impl fmt::Display for PlanName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.product, self.plan)
-    }
-}
-
-impl From<&Plan> for PlanName {
-    fn from(plan: &Plan) -> Self {
-        Self { product: plan.product.clone(), plan: plan.name.clone() }
-    }
 }
 
 /// The plans of the station, by their hashes.

@@ -18,6 +18,7 @@ pub mod serial;
 mod tables;
 mod text;
 
+use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
@@ -94,6 +95,27 @@ pub struct Plan {
     base: Selected,
     /// And with those of each variant, by its name.
     variants: Vec<(String, Selected)>,
+}
+
+/// A product and the name of its plan, which all versions of that plan have in common.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct PlanName {
+    /// The product.
+    pub product: String,
+    /// The plan's name.
+    pub plan: String,
+}
+
+impl fmt::Display for PlanName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.product, self.plan)
+    }
+}
+
+impl From<&Plan> for PlanName {
+    fn from(plan: &Plan) -> Self {
+        Self { product: plan.product.clone(), plan: plan.name.clone() }
+    }
 }
 
 /// What is done with one board.

@@ -4,9 +4,8 @@ use std::path::Path;
 
 use super::bundle::Unpacked;
 use super::{Bundle, BundleError, KeptPlans, PublicKey, Signed, Statement};
-use crate::history::PlanName;
 use crate::input_error::InputError;
-use crate::plan::Plan;
+use crate::plan::{Plan, PlanName};
 use crate::store::{Plant, StoreError};
 
 /// A plan that was not fetched. The one that is kept stays.

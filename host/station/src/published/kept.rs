@@ -9,8 +9,7 @@ use halfrow::result::sha256;
 
 use super::bundle::{PLAN, Unpacked, keep};
 use super::{BundleError, FetchError, PublicKey, Signed, Statement};
-use crate::history::PlanName;
-use crate::plan::Plan;
+use crate::plan::{Plan, PlanName};
 use crate::record::is_hash;
 use crate::store::make_folder;
 

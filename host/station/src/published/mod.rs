@@ -14,13 +14,12 @@ mod fetched;
 mod kept;
 mod signed;
 
+use crate::plan::PlanName;
 pub use bundle::{Bundle, BundleError};
 pub(crate) use fetched::look_whole;
 pub use fetched::{FetchError, Fetched, Offer, offered};
 pub use kept::KeptPlans;
 pub use signed::{PublicKey, Signed, SigningError, SigningKey, Statement};
-
-use crate::history::PlanName;
 
 /// What a plan's place in settings begins with when the plant publishes the plan.
 pub(crate) const PLACE: &str = "plant:";

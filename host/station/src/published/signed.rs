@@ -10,7 +10,7 @@ use ring::rand::SystemRandom;
 use ring::signature::{ED25519, Ed25519KeyPair, KeyPair as _, UnparsedPublicKey};
 use serde::{Deserialize, Serialize};
 
-use crate::history::PlanName;
+use crate::plan::PlanName;
 use crate::secret::{self, SecretError};
 
 /// What public keys begin with.

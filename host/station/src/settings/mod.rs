@@ -1,5 +1,6 @@
 //! The settings of a station: its name, its folder, its lanes, its scanner, its hooks.
 
+mod address;
 mod lender;
 mod plans;
 mod plant;
@@ -13,6 +14,7 @@ use std::time::Duration;
 
 use halfrow::Verdict;
 
+pub use address::{Address, AddressError};
 pub(crate) use plant::PASSWORD_OF_PLANT;
 pub use plant::{PlantSettings, PlantSettingsError};
 pub(crate) use read::{LANE_NAME, is_lane_name, is_word};
@@ -20,13 +22,11 @@ pub use sink::{Destination, Login, SinkAddress, SinkSettings};
 pub(crate) use stable::moving;
 
 use crate::floor::{Floor, Place, Rule, Starts};
-use crate::history::PlanName;
 use crate::input_error::{Fault, InputError, text_of};
 use crate::labgrid::LaneBoard;
-use crate::plan::Plan;
+use crate::plan::{Plan, PlanName};
 use crate::published::PublicKey;
 use crate::store::{Introduction, SINK_OF_PLANT, Told};
-use crate::web::Address;
 
 /// The version of the settings' own format.
 pub const SCHEMA: u32 = 1;

@@ -10,15 +10,14 @@ use super::lender::Lender;
 use super::plans::Plans;
 use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText, WorkText};
 use super::{
-    AccessSettings, Hook, LaneSettings, PlansOfPlant, PlantSettings, SCHEMA, Scanner, Settings, SinkSettings,
-    WorkSettings,
+    AccessSettings, Address, AddressError, Hook, LaneSettings, PlansOfPlant, PlantSettings, SCHEMA, Scanner,
+    Settings, SinkSettings, WorkSettings,
 };
 use crate::floor::Starts;
 use crate::input_error::{At, Fault, within};
 use crate::labgrid::LaneBoard;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
 use crate::published::named_by;
-use crate::web::{Address, AddressError};
 
 /// What to do about a wrong key: where all keys are listed.
 const KEYS: &str = "the table \"All settings\" of docs/station-lanes.md names every key";

@@ -31,7 +31,7 @@ mod trouble;
 mod visit;
 mod write_timeout;
 
-pub use access::{Access, Address, AddressError, Role, Scope};
+pub use access::{Access, Role, Scope};
 pub(crate) use access::{TokenError, Tokens, UserError, Users, add_token, add_user};
 pub use routes::{Route, Who, routes};
 pub(crate) use serve::PagesEnded;

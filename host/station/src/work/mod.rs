@@ -23,10 +23,9 @@ pub use error::WorkError;
 pub use held::{Held, Holding, Lost};
 
 use crate::clock;
-use crate::history::PlanName;
 use crate::labgrid::LaneBoard;
 use crate::outbox::{Sent, awaited};
-use crate::plan::Plan;
+use crate::plan::{Plan, PlanName};
 use crate::record::{JobClaim, Record};
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;

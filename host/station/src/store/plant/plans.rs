@@ -4,7 +4,7 @@ use super::super::database::{DatabaseError, Row, values};
 use super::super::{Deed, Snapshot, StoreError, statements as sql};
 use super::Plant;
 use crate::clock;
-use crate::history::PlanName;
+use crate::plan::PlanName;
 use crate::published::{Bundle, Signed, Statement};
 
 impl Plant {

@@ -3,7 +3,6 @@
 //! A badge says who somebody is, and makes an operator; badge and password make an engineer. A cookie says who is logged
 //! in, and every form carries a mark of that cookie, which no page of another site can know.
 
-mod address;
 mod failures;
 mod key;
 mod machines;
@@ -15,7 +14,6 @@ use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-pub use address::{Address, AddressError};
 pub use tokens::Scope;
 pub(crate) use tokens::{TokenError, Tokens};
 pub(super) use users::Identified;
@@ -25,7 +23,7 @@ pub(crate) use users::{UserError, Users};
 use super::visit::User;
 use crate::clock;
 use crate::secret::{self, SecretError};
-use crate::settings::Settings;
+use crate::settings::{Address, Settings};
 use failures::Failures;
 pub(super) use failures::network;
 use key::Key;

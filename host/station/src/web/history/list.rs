@@ -9,8 +9,9 @@ use maud::{Markup, html};
 
 use super::run_filter::{RunFilter, unit_address};
 use super::show;
+use crate::history;
 use crate::history::runs::{self, RunLine};
-use crate::history::{self, PlanName};
+use crate::plan::PlanName;
 use crate::store::Snapshot;
 use crate::web::fields::Fields;
 use crate::web::layout::{Here, Page};

@@ -1,10 +1,10 @@
 //! Limits of a p-chart and the test of two proportions, compared with the figures of SciPy and statsmodels.
 
-use halfrow_station::history::PlanName;
 use halfrow_station::history::control::{Limits, limits};
 use halfrow_station::history::drift::drifts;
 use halfrow_station::history::rate::Rate;
 use halfrow_station::history::yields::{By, Wanted, Yield, yields};
+use halfrow_station::plan::PlanName;
 
 use super::made::{BEGIN_MS, DAY_MS, End, Made, Run};
 

@@ -7,7 +7,7 @@ use crate::trust::is_near;
 /// An address of the pages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Address {
-    pub(super) listen: SocketAddr,
+    pub(crate) listen: SocketAddr,
     /// Whether the address that browsers show begins with `https:`.
     is_https: bool,
     /// Every value that the header `Host` may have.
