@@ -176,11 +176,24 @@ pub(crate) fn signal(process: u32, signal: Signal) {
     kill(Pid::from_raw(process.cast_signed()), signal).unwrap();
 }
 
+/// What proc_pid_stat(5) says of a process, from its state on; nothing if there is none. The name before that may contain
+/// anything.
+pub(crate) fn stat(process: u32) -> Vec<String> {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    let from_state = stat.rsplit_once(')').map_or("", |(_, rest)| rest);
+    from_state.split_whitespace().map(str::to_owned).collect()
+}
+
 /// Whether there is a process of this number that has not ended. Who ends may still wait for its parent, or for the first process,
 /// which need not look after it in a container.
 pub(crate) fn exists(process: u32) -> bool {
-    let state = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
-    state.rsplit(')').next().is_some_and(|rest| !rest.is_empty() && !rest.trim_start().starts_with('Z'))
+    stat(process).first().is_some_and(|state| state != "Z")
+}
+
+/// The process of the lane whose run has this spool, once it is noted there.
+pub(crate) fn lane_process(spool: &Path) -> Option<u32> {
+    let noted = fs::read_to_string(spool.join("lane.pid")).ok()?;
+    noted.split_whitespace().next()?.parse().ok()
 }
 
 /// A process that is killed when it is dropped.

@@ -14,7 +14,7 @@ use nix::sys::signal::Signal;
 use serde_json::Value;
 
 use super::floor::{HANG, Running, SERIALS, Station};
-use crate::common::{exists, program, signal, silent_board, until};
+use crate::common::{exists, lane_process, program, signal, silent_board, until};
 
 /// Waits until the lane has connected, and keeps the connection.
 pub(crate) fn connected(listener: &TcpListener) {
@@ -33,8 +33,7 @@ pub(crate) fn connected(listener: &TcpListener) {
 
 /// The process id of the lane that has this run.
 pub(super) fn lane_of(station: &Station, run: &Value) -> u32 {
-    let noted = station.path("data/spool").join(run.as_str().unwrap()).join("lane.pid");
-    std::fs::read_to_string(noted).unwrap().split_whitespace().next().unwrap().parse().unwrap()
+    lane_process(&station.path("data/spool").join(run.as_str().unwrap())).unwrap()
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::process::Command;
 use nix::sys::signal::Signal;
 
 use super::text::{Figures, assert_sound, promtool, told};
-use crate::common::{self, signal, silent_board, until_found};
+use crate::common::{self, lane_process, signal, silent_board, until_found};
 use crate::lanes::ends::connected;
 use crate::pages::station::{PUBLIC, SERIALS, Serving, Station};
 use crate::plant::server::Server;
@@ -110,9 +110,8 @@ fn a_lane_that_was_killed_and_a_result_that_is_not_saved_are_told() {
     scan(&serving, "1", SERIALS[0]);
     connected(&listener);
     let run = station.query("SELECT id FROM run").remove(0);
-    let noted = fs::read_to_string(station.path("data/spool").join(run).join("lane.pid")).unwrap();
-    let lane = noted.split_whitespace().next().unwrap().parse().unwrap();
-    signal(lane, Signal::SIGSTOP);
+    let lane = lane_process(&station.path("data/spool").join(run));
+    signal(lane.unwrap(), Signal::SIGSTOP);
     let killed = in_state(&serving, "1", "error");
     assert_eq!(killed.at("halfrow_lane_kills_total{lane=\"1\"}"), 1.0);
     assert_eq!(killed.at("halfrow_lane_kills_total{lane=\"2\"}"), 0.0);

@@ -19,10 +19,6 @@ fn lane_of(here: &Browser, language: &str) -> String {
     lane.split_once("</article>").unwrap().0.to_owned()
 }
 
-fn scan(here: &Browser, serial: &str, lane: &str) {
-    here.post("/scan", &[("text", serial), ("lane", lane)]).until_taken();
-}
-
 #[test]
 fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
     let station =
@@ -66,9 +62,9 @@ fn what_to_do_about_a_wrong_label_is_told_in_the_language() {
     let station = Station::private(1).where_instead("plan.toml", "not-checked", "required");
     let serving = station.serve();
     let here = serving.here();
-    scan(&here, SERIALS[0], "1");
+    here.scan(SERIALS[0], "1");
     run_of(&here, "1", "pass", "en");
-    scan(&here, SERIALS[1], "1");
+    here.scan(SERIALS[1], "1");
     for (language, asked) in [
         ("en", "Scan the label of the board that is in the lane"),
         ("de", "Etikett der Platine scannen, die auf dem Platz liegt"),
@@ -89,7 +85,7 @@ fn what_to_do_is_told_once_and_in_one_language() {
     let station = Station::private(1).where_instead("station.toml", "mock,serial=1", "tcp:127.0.0.1:1");
     let serving = station.serve();
     let here = serving.here();
-    scan(&here, SERIALS[0], "1");
+    here.scan(SERIALS[0], "1");
     for language in ["en", "de", "zh"] {
         let run = run_of(&here, "1", "error", language);
         assert_eq!(run.matches("ser2net").count(), 2, "{language}: {run}");
@@ -104,7 +100,7 @@ fn the_verdict_on_the_mock_board_is_not_shown_as_that_of_the_board_in_the_lane()
     let station = Station::private(1).where_instead("plan.toml", "[tables]", &shift);
     let serving = station.serve();
     let here = serving.here();
-    scan(&here, SERIALS[0], "1");
+    here.scan(SERIALS[0], "1");
     run_of(&here, "1", "pass", "en");
     let lane = |language: &str| lane_of(&here, language);
     // Now and then a fault is drawn that goes unfound.
@@ -149,7 +145,7 @@ fn a_lane_says_of_a_board_that_a_program_plays_that_no_hardware_was_tested() {
     let station = Station::private(1);
     let serving = station.serve();
     let here = serving.here();
-    scan(&here, SERIALS[0], "1");
+    here.scan(SERIALS[0], "1");
     here.get("/").until("lane pass");
     for (language, said) in
         [("en", "no hardware was tested"), ("de", "keine Hardware geprüft"), ("zh", "未测试硬件")]
@@ -164,7 +160,7 @@ fn a_pass_of_a_board_whose_identity_nobody_checked_says_so_in_every_language() {
     let station = Station::private(1);
     let serving = station.serve();
     let here = serving.here();
-    scan(&here, SERIALS[0], "1");
+    here.scan(SERIALS[0], "1");
     for (language, unchecked) in
         [("en", "identity not checked"), ("de", "Identität nicht geprüft"), ("zh", "身份未核对")]
     {
@@ -183,7 +179,7 @@ fn a_pass_of_a_board_whose_identity_was_checked_says_nothing_of_it() {
     let station = Station::private(1).where_instead("plan.toml", "not-checked", "if-present");
     let serving = station.serve();
     let here = serving.here();
-    scan(&here, SERIALS[0], "1");
+    here.scan(SERIALS[0], "1");
     here.get("/").until("lane pass");
     let lane = lane_of(&here, "en");
     assert!(!lane.contains("identity"), "{lane}");

@@ -285,4 +285,9 @@ impl Browser {
         let pairs: Vec<_> = fields.map(|(name, value)| format!("{name}={}", escaped(value))).collect();
         Request { body: pairs.join("&"), ..request }
     }
+
+    /// Lets `serial` be tested in `lane`, or wait there.
+    pub(crate) fn scan(&self, serial: &str, lane: &str) {
+        self.post("/scan", &[("text", serial), ("lane", lane)]).until_taken();
+    }
 }

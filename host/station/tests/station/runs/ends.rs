@@ -16,7 +16,7 @@ use nix::sys::signal::Signal;
 
 use super::bench::{Did, PLAN, Station};
 use super::identity::{device, one_after_the_other};
-use crate::common::{exists, signal, silent_board};
+use crate::common::{exists, lane_process, signal, silent_board};
 use crate::lanes::ends::connected;
 
 #[test]
@@ -207,11 +207,9 @@ pub(crate) fn lane_of(station: &Station, listener: &TcpListener) -> u32 {
     let spool = std::fs::read_dir(station.data().join("spool")).unwrap().next().unwrap().unwrap().path();
     let begun = Instant::now();
     loop {
-        let read = |name| std::fs::read_to_string(spool.join(name)).unwrap_or_default();
-        let has_told = read("events.jsonl").ends_with('\n');
-        if let Some(Ok(id)) = read("lane.pid").split_whitespace().next().map(str::parse).filter(|_| has_told)
-        {
-            return id;
+        let told = std::fs::read_to_string(spool.join("events.jsonl")).unwrap_or_default();
+        if let Some(process) = lane_process(&spool).filter(|_| told.ends_with('\n')) {
+            return process;
         }
         assert!(begun.elapsed() < Duration::from_secs(60), "no lane");
     }

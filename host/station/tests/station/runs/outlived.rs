@@ -7,7 +7,7 @@ use std::process::{Child, Command};
 use halfrow_station::store::Folder;
 
 use super::bench::PLAN;
-use crate::common::{change, query, until};
+use crate::common::{change, query, stat, until};
 use crate::history::commands::did;
 use crate::history::made::{End, Made, Run};
 use crate::history::served::Served;
@@ -26,15 +26,9 @@ impl Outlived {
         let spool = made.folder().spool(&made.begin(&run).0.id);
         fs::create_dir(&spool).unwrap();
         let outlived = Self(command.spawn().unwrap());
-        let began = &outlived.stat()[19];
+        let began = &stat(outlived.0.id())[19];
         fs::write(spool.join("lane.pid"), format!("{} {began}\n", outlived.0.id())).unwrap();
         outlived
-    }
-
-    /// What proc_pid_stat(5) says, from the state on.
-    fn stat(&self) -> Vec<String> {
-        let stat = fs::read_to_string(format!("/proc/{}/stat", self.0.id())).unwrap();
-        stat.rsplit_once(')').unwrap().1.split_whitespace().map(str::to_owned).collect()
     }
 }
 
@@ -81,7 +75,7 @@ threading.Thread(target=time.sleep, args=[600]).start()
 ctypes.CDLL(None).pthread_exit(None)";
     let mut made = Made::new();
     let outlived = Outlived::by(&mut made, "1", Command::new("python3").args(["-c", thread]));
-    until("the end of the first thread", || outlived.stat()[0] == "Z");
+    until("the end of the first thread", || stat(outlived.0.id())[0] == "Z");
     is_out(made);
 }
 

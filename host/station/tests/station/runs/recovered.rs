@@ -8,7 +8,7 @@ use halfrow_station::record::{BoardSeen, RunCause, StepOutcome};
 use halfrow_station::run::{RunError, recover};
 
 use super::bench::PLAN;
-use crate::common::query;
+use crate::common::{query, stat};
 use crate::history::made::{End, Made, Run, step};
 
 const SHIFT: &str = "[shift]\ngood = \"CAT90001\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]";
@@ -70,8 +70,7 @@ fn the_lane_of_a_run_that_is_found_open_is_killed() {
     });
     let mut lanes = [(); 2].map(|()| Command::new("sleep").arg("20").process_group(0).spawn().unwrap());
     for (number, (spool, lane)) in spools.iter().zip(&lanes).enumerate() {
-        let stat = std::fs::read_to_string(format!("/proc/{}/stat", lane.id())).unwrap();
-        let began: usize = stat.split(' ').nth(21).unwrap().parse().unwrap();
+        let began: usize = stat(lane.id())[19].parse().unwrap();
         // For the second lane, the start time is that of another process with its id.
         std::fs::write(spool.join("lane.pid"), format!("{} {}", lane.id(), began + number)).unwrap();
     }

@@ -66,7 +66,7 @@ fn no_page_violates_a_rule_of_axe() {
         );
         let serving = station.serve();
         let (here, own) = (serving.here(), format!("http://127.0.0.1:{}", serving.port));
-        here.post("/scan", &[("text", SERIALS[0]), ("lane", "1")]).until_taken();
+        here.scan(SERIALS[0], "1");
         let failed = station.until_failed();
         let mut page = Chromium::open(&format!("{own}/"));
         violations(&mut page, &axe, &own, "/", &mut found);

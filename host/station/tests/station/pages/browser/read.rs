@@ -13,7 +13,7 @@ fn failed() -> (Station, Serving, String) {
         "mock,serial=1,fault=stuck-data\"",
     );
     let serving = station.serve();
-    serving.here().post("/scan", &[("text", SERIALS[0]), ("lane", "1")]).until_taken();
+    serving.here().scan(SERIALS[0], "1");
     let run = station.until_failed();
     (station, serving, run)
 }

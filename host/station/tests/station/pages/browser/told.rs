@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::chromium::Chromium;
 use crate::common::until;
-use crate::pages::station::{Browser, SERIALS, Serving, Station};
+use crate::pages::station::{SERIALS, Serving, Station};
 
 /// A station of `lanes` lanes. The third has a board that cannot be reached, the sixth a button.
 fn station(lanes: usize) -> Station {
@@ -15,11 +15,6 @@ fn station(lanes: usize) -> Station {
         .where_instead("station.toml", "mock,serial=3", "tcp:127.0.0.1:1")
         .where_instead("station.toml", "mock,serial=2", "mock,serial=2,fault=stuck-data,bit=7")
         .where_instead("station.toml", six, &format!("{six}\nstart = [\"button\"]"))
-}
-
-/// Lets `serial` be tested in `lane`, or wait there.
-fn scan(here: &Browser, serial: &str, lane: &str) {
-    here.post("/scan", &[("text", serial), ("lane", lane)]).until_taken();
 }
 
 /// Opens the page in `language`, at this size.
@@ -81,7 +76,7 @@ fn what_to_do_is_shown_whole_on_every_screen_and_in_every_language() {
         let serving = station.serve();
         let here = serving.here();
         for (serial, lane) in SERIALS.iter().zip(["1", "2", "3", "6"]) {
-            scan(&here, serial, lane);
+            here.scan(serial, lane);
         }
         let mut page = Chromium::live(&serving);
         page.wait(
@@ -196,7 +191,7 @@ fn on_paper_verdicts_keep_their_ground_and_no_column_is_cut_off() {
     let serving = station.serve();
     let mut page = Chromium::live(&serving);
     page.wait("document.querySelector('.lane.ready') !== null");
-    scan(&serving.here(), SERIALS[0], "1");
+    serving.here().scan(SERIALS[0], "1");
     page.wait("document.querySelector('.lane.pass') !== null");
     let at = |path: &str| format!("http://127.0.0.1:{}{path}", serving.port);
     let history = on_paper(&mut page, &at("/history"));
@@ -226,7 +221,7 @@ fn on_paper_what_was_found_in_a_lane_is_whole() {
         let serving = station.serve();
         let here = serving.here();
         for (serial, lane) in SERIALS.iter().zip(["1", "2", "3"]) {
-            scan(&here, serial, lane);
+            here.scan(serial, lane);
         }
         let mut page = Chromium::live(&serving);
         page.wait("document.querySelector('#lane-3.error .asks') && document.querySelector('#lane-2.fail .why') && true");
