@@ -83,7 +83,7 @@ pub enum End {
 /// Attends to a lane while it works.
 pub trait Attendant {
     /// Who wants it to end, once somebody does.
-    fn stop(&self) -> Option<StoppedBy>;
+    fn stop(&mut self) -> Option<StoppedBy>;
     /// Takes a message of the lane.
     fn hear(&mut self, message: &Message);
     /// Whether the board may be judged under the serial number of the run.

@@ -1,15 +1,13 @@
 //! The board of a run, which may be lent by labgrid.
 
-use std::cell::RefCell;
 use std::path::Path;
 
 use halfrow::verdict::StoppedBy;
 
-use super::Order;
+use super::{Attending, Order, Stage, Watch};
 use crate::labgrid::{AcquiredPlace, LaneBoard, Place};
-use crate::lane::supervisor::{Attendant, End, LaneReport, Patience, supervise};
-use crate::lane::{Job, Message, Ruling};
-use crate::record::BoardSeen;
+use crate::lane::supervisor::{End, LaneReport, Patience, supervise};
+use crate::lane::{Job, Message};
 use crate::said::Said;
 
 /// Has a lane carry out the job. If the board is at a place of labgrid, the place is held meanwhile. Also returns why the place was
@@ -19,53 +17,34 @@ pub(super) fn supervised(
     mut job: Job,
     spool: &Path,
     patience: Patience,
-    attendant: &mut dyn Attendant,
+    attending: &mut Attending<'_>,
 ) -> (LaneReport, Option<Said>) {
-    let place = match order.board {
-        // The mock needs no board.
-        LaneBoard::Lent(place) if !job.is_mock => place,
-        _ => return (supervise(order.program, &job, spool, patience, attendant), None),
-    };
-    match held(place, attendant) {
-        Ok(held) => {
-            job.target = held.target.to_string();
-            tracing::info!("the place {} is {}", place.name, job.target);
-            let mut lent = Lent { held: RefCell::new(held), attendant };
-            let heard = supervise(order.program, &job, spool, patience, &mut lent);
-            let lost = if lent.attendant.stop().is_none() { lent.held.get_mut().lost() } else { None };
-            lent.held.into_inner().give_back();
-            (heard, lost.map(|lost| Said::of(&lost)))
+    // The mock needs no board.
+    if let LaneBoard::Lent(place) = order.board
+        && !job.is_mock
+    {
+        match held(place, attending.watch) {
+            Ok(held) => {
+                job.target = held.target.to_string();
+                tracing::info!("the place {} is {}", place.name, job.target);
+                attending.place = Some(held);
+            }
+            Err(end) => return (LaneReport { steps: Vec::new(), took: None, end }, None),
         }
-        Err(end) => (LaneReport { steps: Vec::new(), took: None, end }, None),
     }
+    let heard = supervise(order.program, &job, spool, patience, attending);
+    let Some(mut held) = attending.place.take() else { return (heard, None) };
+    let lost = if attending.watch.stop().is_none() { held.lost() } else { None };
+    held.give_back();
+    (heard, lost.map(|lost| Said::of(&lost)))
 }
 
-fn held(place: &Place, attendant: &mut dyn Attendant) -> Result<AcquiredPlace, End> {
-    attendant.hear(&Message::Doing { what: format!("waiting for the place {}", place.name) });
-    match place.hold(&|| attendant.stop().is_some()) {
+fn held(place: &Place, watch: &mut dyn Watch) -> Result<AcquiredPlace, End> {
+    let what = format!("waiting for the place {}", place.name);
+    watch.hear(Stage::Told(&Message::Doing { what }));
+    match place.hold(&|| watch.stop().is_some()) {
         Ok(Some(held)) => Ok(held),
-        Ok(None) => Err(End::Stopped(attendant.stop().unwrap_or(StoppedBy::System))),
+        Ok(None) => Err(End::Stopped(watch.stop().unwrap_or(StoppedBy::System))),
         Err(error) => Err(End::Refused(Said::of(&error))),
-    }
-}
-
-/// Ends the run when the place is lost.
-struct Lent<'a> {
-    held: RefCell<AcquiredPlace>,
-    attendant: &'a mut dyn Attendant,
-}
-
-impl Attendant for Lent<'_> {
-    fn stop(&self) -> Option<StoppedBy> {
-        let is_lost = || self.held.borrow_mut().lost().is_some();
-        self.attendant.stop().or_else(|| is_lost().then_some(StoppedBy::Caller))
-    }
-
-    fn hear(&mut self, message: &Message) {
-        self.attendant.hear(message);
-    }
-
-    fn rule(&mut self, board: &BoardSeen) -> Ruling {
-        self.attendant.rule(board)
     }
 }

@@ -21,7 +21,7 @@ use halfrow::verdict::StoppedBy;
 pub use recovered::{Recovered, recover, recover_run};
 
 use crate::ids::NoRandomness;
-use crate::labgrid::LaneBoard;
+use crate::labgrid::{AcquiredPlace, LaneBoard};
 use crate::lane::supervisor::{Attendant, End, LaneReport};
 use crate::lane::{Job, Message, Ruling};
 use crate::plan::limits::Maker;
@@ -168,7 +168,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     watch.hear(Stage::Begun(&head));
     let begun = Instant::now();
     let job = job(&head, order, ids::seed(id), &spool);
-    let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
+    let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked, place: None };
     let (heard, lost) =
         lent_board::supervised(order, job, &spool, patience::of(order.silence, &selected), &mut attending);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
@@ -236,11 +236,13 @@ struct Attending<'a> {
     run: &'a RunHead,
     watch: &'a mut dyn Watch,
     device: DeviceSeen,
+    /// The place that is held for it, without which it ends.
+    place: Option<AcquiredPlace>,
 }
 
 impl Attendant for Attending<'_> {
-    fn stop(&self) -> Option<StoppedBy> {
-        self.watch.stop()
+    fn stop(&mut self) -> Option<StoppedBy> {
+        self.watch.stop().or_else(|| self.place.as_mut()?.lost().map(|_| StoppedBy::Caller))
     }
 
     fn hear(&mut self, message: &Message) {

@@ -18,7 +18,7 @@ use crate::common::{PLAN, folder, program, script};
 struct Slow(Duration);
 
 impl Attendant for Slow {
-    fn stop(&self) -> Option<StoppedBy> {
+    fn stop(&mut self) -> Option<StoppedBy> {
         None
     }
 
