@@ -109,6 +109,7 @@ impl Progress for Bar {
             }
             Event::RowsExpected(rows) => self.expect(rows),
             Event::Frame(name) => say(&self.bar, &name),
+            Event::AtSpeed(judged) => say(&self.bar, &judged.to_string()),
             Event::Rows(count) => self.bar.inc(count),
             Event::Soaked(soaked) => self.soaked(&soaked),
             Event::Done => self.bar.finish_and_clear(),

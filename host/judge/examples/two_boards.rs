@@ -41,6 +41,7 @@ fn main() -> Result<(), Failure> {
             match event {
                 Event::Step(step) => println!("{name}: {step}"),
                 Event::Frame(frame) => println!("{name}: {frame}"),
+                Event::AtSpeed(judged) => println!("{name}: {judged}"),
                 _ => {}
             }
         }

@@ -18,6 +18,8 @@
 use std::fmt;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::result::SoakLength;
 
 /// What a run reports while it works.
@@ -31,10 +33,27 @@ pub enum Event {
     Frame(String),
     /// This many rows came back, or were computed, since the last event of this kind.
     Rows(u64),
+    /// Frames that the board makes by itself were judged.
+    AtSpeed(JudgedAtSpeed),
     /// Frames of a soak were judged.
     Soaked(Soaked),
     /// The run is over, in whatever way. A plan that is refused before the board is asked sends no event at all.
     Done,
+}
+
+/// How many frames of a burst were judged. Its text may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JudgedAtSpeed {
+    /// Frames judged.
+    pub frames: u32,
+    /// The frames of the whole burst.
+    pub of: u32,
+}
+
+impl fmt::Display for JudgedAtSpeed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {} of {}", Step::AtSpeed, self.frames, self.of)
+    }
 }
 
 /// How far a soak has come.
@@ -63,13 +82,17 @@ impl Soaked {
 }
 
 /// A step of a run that moves no rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Step {
     /// The reference computes results that another program has computed before.
+    #[serde(rename = "judge")]
     JudgeTheJudge,
     /// The session with the board is opened.
+    #[serde(rename = "open")]
     OpenTheBoard,
     /// Bytes go to the board and come back.
+    #[serde(rename = "link")]
     TestTheLink,
     /// The board makes frames by itself.
     AtSpeed,
@@ -78,6 +101,7 @@ pub enum Step {
     /// Everything is done again, since a late copy of a request may have spoilt it.
     LookAgain,
     /// The board went away, and the run waits for it.
+    #[serde(rename = "wait")]
     WaitForTheBoard,
 }
 

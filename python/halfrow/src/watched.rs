@@ -79,6 +79,7 @@ fn tell(listener: Option<&Bound<'_, PyAny>>, event: &Event) -> PyResult<()> {
         Event::Step(step) => ("step", step.name().to_owned(), 0),
         Event::RowsExpected(rows) => ("rows-expected", String::new(), *rows),
         Event::Frame(name) => ("frame", name.clone(), 0),
+        Event::AtSpeed(judged) => ("frame", judged.to_string(), 0),
         Event::Rows(rows) => ("rows", String::new(), *rows),
         // An event of a soak, which this package never starts.
         Event::Soaked(_) => return Ok(()),

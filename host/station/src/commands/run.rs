@@ -198,6 +198,7 @@ impl Watch for SignalWatch {
     fn hear(&mut self, stage: Stage<'_>) {
         match stage {
             Stage::Begun(run) => tracing::info!("run {}", run.id),
+            Stage::AwaitsPlace(name) => tracing::info!("waiting for the place {name}"),
             Stage::Told(message) => log(message),
             Stage::Saving { .. } => tracing::info!("the result is being saved"),
         }
@@ -207,7 +208,9 @@ impl Watch for SignalWatch {
 fn log(message: &Message) {
     match message {
         Message::Step { seq, attempt, name } => tracing::info!("step {seq}, {name}, try {attempt}"),
-        Message::Doing { what } => tracing::info!("{what}"),
+        Message::Frame { name } => tracing::info!("{name}"),
+        Message::Judging { step } => tracing::info!("{step}"),
+        Message::AtSpeed(judged) => tracing::info!("{judged}"),
         Message::Ended { step } => tracing::info!("{} {}: {}", step.name, step.outcome, step.detail),
         Message::Identified { board } => tracing::info!("the board says it is {}", board.name),
         Message::Begun { .. } | Message::Rows { .. } | Message::Done | Message::Refused { .. } => {}

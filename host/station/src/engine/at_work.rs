@@ -13,7 +13,7 @@ use super::hook_queue::{NotStarted, Shows};
 use super::known::{Known, KnownOfLane};
 use super::lane_threads::{self, Shared, StopAsked};
 use super::lane_work::LaneWork;
-use super::news::{LaneState, News};
+use super::news::{LaneDoing, LaneState, News};
 use super::unsent;
 use super::{Input, LaneEvent, LiveState, in_time};
 use crate::clock;
@@ -245,8 +245,8 @@ impl AtWork {
                 }
                 self.happened(lane, event);
             }
-            LaneEvent::Doing { run, what, rows } => {
-                self.tell(&News::Doing { lane: name(), run, what, rows });
+            LaneEvent::Doing { run, what } => {
+                self.tell(&News::Doing(LaneDoing { lane: name(), run, what }));
             }
             LaneEvent::Hook { of, said } => {
                 let lane = name();

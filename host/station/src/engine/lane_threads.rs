@@ -17,7 +17,7 @@ use super::logged::LoggedOfLanes;
 use super::{Input, LaneEvent};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
-use crate::lane::Message;
+use crate::lane::Doing;
 use crate::outbox::{Sent, awaited, needs_person};
 use crate::record::DeviceSeen;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
@@ -216,23 +216,14 @@ impl Watch for RunWatch<'_> {
                 }
                 LaneEvent::Happened(Event::Saving)
             }
-            Stage::Told(message) => match doing(message) {
-                Some((what, rows)) => LaneEvent::Doing { run: self.run.clone(), what, rows },
+            Stage::AwaitsPlace(name) => {
+                LaneEvent::Doing { run: self.run.clone(), what: Doing::Place(name.to_owned()) }
+            }
+            Stage::Told(message) => match Doing::of(message) {
+                Some(what) => LaneEvent::Doing { run: self.run.clone(), what },
                 None => return,
             },
         };
         self.shared.tell(self.lane, heard);
-    }
-}
-
-/// What a lane does, in words for people, and its rows: done and expected.
-fn doing(message: &Message) -> Option<(String, Option<(u64, u64)>)> {
-    match message {
-        Message::Step { name, .. } => Some((name.clone(), None)),
-        Message::Doing { what } => Some((what.clone(), None)),
-        Message::Rows { done, expected } => Some(("rows".to_owned(), Some((*done, *expected)))),
-        Message::Ended { step } => Some((format!("{} {}", step.name, step.outcome), None)),
-        Message::Identified { board } => Some((format!("the board is {}", board.name), None)),
-        Message::Begun { .. } | Message::Done | Message::Refused { .. } => None,
     }
 }

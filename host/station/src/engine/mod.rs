@@ -31,11 +31,12 @@ use parking_lot::Mutex;
 
 pub use figures::{Figures, Histogram};
 pub(crate) use hooks::HookError;
-pub use news::{LaneState, News};
+pub use news::{LaneDoing, LaneState, News};
 
 use crate::floor::{Act, Event, ScanError};
 use crate::guard::guarded;
 use crate::labgrid;
+use crate::lane::Doing;
 use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{SharedStore, Store};
@@ -64,8 +65,7 @@ enum LaneEvent {
     Happened(Event),
     Doing {
         run: String,
-        what: String,
-        rows: Option<(u64, u64)>,
+        what: Doing,
     },
     /// With the run and the serial number whose verdict the hook should have shown, if any.
     Hook {

@@ -5,6 +5,7 @@ use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
 use serde::Serialize;
 
 use crate::floor::{Act, Lane, Shown, Word};
+use crate::lane::Doing;
 use crate::said::{self, Said};
 
 /// How many pieces of news a listener may be behind. One that is further behind hears no more, and has to begin anew.
@@ -17,16 +18,7 @@ pub enum News {
     /// The state of a lane.
     Lane(LaneState),
     /// What a lane's run does.
-    Doing {
-        /// The lane.
-        lane: String,
-        /// The run.
-        run: String,
-        /// What, for people.
-        what: String,
-        /// Rows that came back, and how many are expected.
-        rows: Option<(u64, u64)>,
-    },
+    Doing(LaneDoing),
     /// What became of a scan.
     Scan {
         /// The number that it came with.
@@ -55,6 +47,18 @@ pub enum News {
         #[serde(serialize_with = "said::as_text")]
         said: Said,
     },
+}
+
+/// What a lane's run does.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct LaneDoing {
+    /// The lane.
+    pub lane: String,
+    /// The run.
+    pub run: String,
+    /// What.
+    #[serde(flatten)]
+    pub what: Doing,
 }
 
 /// The state of a lane.

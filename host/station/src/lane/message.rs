@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use halfrow::progress::{JudgedAtSpeed, Step};
 use halfrow::verdict::StoppedBy;
 use serde::{Deserialize, Serialize};
 
@@ -92,11 +93,18 @@ pub enum Message {
         /// The board.
         board: BoardSeen,
     },
-    /// The step begins to do something else.
-    Doing {
-        /// What, in words for people.
-        what: String,
+    /// The frame of this name is being sent.
+    Frame {
+        /// The name.
+        name: String,
     },
+    /// The judge begins a step of its own.
+    Judging {
+        /// Which.
+        step: Step,
+    },
+    /// Frames that the board makes by itself were judged.
+    AtSpeed(JudgedAtSpeed),
     /// Rows that came back so far.
     Rows {
         /// How many.

@@ -10,6 +10,7 @@
 
 mod acts;
 pub mod child;
+mod doing;
 pub(crate) mod kept_frame;
 mod kept_report;
 mod message;
@@ -26,4 +27,5 @@ pub const MEMORY_MIB: u64 = 4096;
 /// How much it may be given, in MiB.
 pub(crate) const MEMORIES_MIB: std::ops::RangeInclusive<u64> = 64..=1_048_576;
 
+pub use doing::Doing;
 pub use message::{Control, Job, Message, Ruling};

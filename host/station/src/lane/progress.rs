@@ -40,8 +40,9 @@ impl<'a> ProgressMessages<'a> {
 impl Progress for ProgressMessages<'_> {
     fn event(&self, event: Event) {
         match event {
-            Event::Step(step) => (self.tell)(&Message::Doing { what: step.to_string() }),
-            Event::Frame(name) => (self.tell)(&Message::Doing { what: name }),
+            Event::Step(step) => (self.tell)(&Message::Judging { step }),
+            Event::Frame(name) => (self.tell)(&Message::Frame { name }),
+            Event::AtSpeed(judged) => (self.tell)(&Message::AtSpeed(judged)),
             Event::Rows(rows) => self.count(rows),
             Event::RowsExpected(rows) => self.rows.lock().expected += rows,
             // No plan has a step of that kind.

@@ -5,7 +5,7 @@ use halfrow::target::BoardKind;
 use halfrow::verdict::{Cause, StoppedBy};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use strum::{AsRefStr, Display, EnumString};
+use strum::{AsRefStr, Display};
 
 use super::measured::Measured;
 use crate::exit::Exit;
@@ -91,7 +91,7 @@ pub(crate) fn last_tries(steps: &[StepRecord]) -> impl Iterator<Item = &StepReco
 }
 
 /// The outcome of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, AsRefStr, Display, EnumString)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, AsRefStr, Display)]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
 pub enum StepOutcome {

@@ -6,8 +6,8 @@ use halfrow::verdict::StoppedBy;
 
 use super::{Attending, Order, Stage, Watch};
 use crate::labgrid::{AcquiredPlace, LaneBoard, Place};
+use crate::lane::Job;
 use crate::lane::supervisor::{End, LaneReport, Patience, supervise};
-use crate::lane::{Job, Message};
 use crate::said::Said;
 
 /// Has a lane carry out the job. If the board is at a place of labgrid, the place is held meanwhile. Also returns why the place was
@@ -40,8 +40,7 @@ pub(super) fn supervised(
 }
 
 fn held(place: &Place, watch: &mut dyn Watch) -> Result<AcquiredPlace, End> {
-    let what = format!("waiting for the place {}", place.name);
-    watch.hear(Stage::Told(&Message::Doing { what }));
+    watch.hear(Stage::AwaitsPlace(&place.name));
     match place.hold(&|| watch.stop().is_some()) {
         Ok(Some(held)) => Ok(held),
         Ok(None) => Err(End::Stopped(watch.stop().unwrap_or(StoppedBy::System))),

@@ -94,6 +94,8 @@ pub trait Watch {
 pub enum Stage<'a> {
     /// It is in the store, and its lane starts.
     Begun(&'a RunHead),
+    /// It waits for the place of labgrid of this name.
+    AwaitsPlace(&'a str),
     /// Its lane reported something.
     Told(&'a Message),
     /// Its lane has ended, and its result is being saved.

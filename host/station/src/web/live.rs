@@ -14,7 +14,7 @@ use parking_lot::Mutex;
 use tokio::sync::{broadcast, oneshot};
 
 use crate::clock;
-use crate::engine::{Engine, LaneState, News, in_time};
+use crate::engine::{Engine, LaneDoing, LaneState, News, in_time};
 use crate::floor::{ScanError, Word};
 use crate::guard::guarded;
 use crate::said::Said;
@@ -26,14 +26,6 @@ const BEAT: Duration = Duration::from_secs(1);
 const FRESH: Duration = Duration::from_secs(5);
 /// How many events a page may lag behind. One that lags further is dropped, and connects anew.
 const BACKLOG: usize = 1024;
-
-/// What a lane's run does.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Doing {
-    pub(super) run: String,
-    pub(super) what: String,
-    pub(super) rows: Option<(u64, u64)>,
-}
 
 /// The result of a scan or of an act.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,7 +50,7 @@ pub(super) enum EventKind {
     /// A beat, with its moment.
     Beat(String),
     Lane(Box<LaneState>),
-    Doing(String, Doing),
+    Doing(LaneDoing),
     Scan(Became),
     Hook(String, FailedHook),
 }
@@ -78,7 +70,7 @@ pub(super) struct Now {
     /// This moment, as pages name it.
     pub(super) beat: String,
     pub(super) lanes: Vec<LaneState>,
-    pub(super) doing: BTreeMap<String, Doing>,
+    pub(super) doing: BTreeMap<String, LaneDoing>,
     /// The last hook of each lane that failed since the lane came to show what it shows.
     pub(super) failed: BTreeMap<String, FailedHook>,
 }
@@ -135,7 +127,7 @@ impl Live {
     }
 
     /// What this run does in this lane, as far as it was told.
-    pub(super) fn doing(&self, lane: &str, run: &str) -> Option<Doing> {
+    pub(super) fn doing(&self, lane: &str, run: &str) -> Option<LaneDoing> {
         let now = self.now.lock();
         now.doing.get(lane).filter(|doing| doing.run == run).cloned()
     }
@@ -174,7 +166,7 @@ impl Live {
     fn hear(&self, news: News) {
         let what = match news {
             News::Lane(state) => EventKind::Lane(Box::new(state)),
-            News::Doing { lane, run, what, rows } => EventKind::Doing(lane, Doing { run, what, rows }),
+            News::Doing(doing) => EventKind::Doing(doing),
             News::Scan { number, scanned, is_taken, lane, said } => {
                 EventKind::Scan(Became { number, scanned, is_taken, lane, said })
             }
@@ -222,7 +214,7 @@ impl Live {
                     }
                 }
             }
-            EventKind::Doing(lane, doing) => drop(now.doing.insert(lane.clone(), doing.clone())),
+            EventKind::Doing(doing) => drop(now.doing.insert(doing.lane.clone(), doing.clone())),
             EventKind::Hook(lane, failed) => drop(now.failed.insert(lane.clone(), failed.clone())),
             EventKind::Beat(_) | EventKind::Scan(_) => {}
         }
@@ -264,6 +256,7 @@ fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
 mod tests {
     use super::*;
     use crate::engine::tests::stopped;
+    use crate::lane::Doing;
 
     /// `assets/live.js` takes everything anew when a number is not the one after the last.
     #[test]
@@ -311,8 +304,8 @@ mod tests {
     #[test]
     fn what_a_run_does_is_known_while_it_does_it_and_is_not_that_of_another_run() {
         let live = Live::of(Vec::new());
-        let doing = Doing { run: "a".to_owned(), what: "verify".to_owned(), rows: Some((3, 9)) };
-        live.tell(EventKind::Doing("1".to_owned(), doing.clone()));
+        let doing = LaneDoing { lane: "1".to_owned(), run: "a".to_owned(), what: Doing::Rows(3, 9) };
+        live.tell(EventKind::Doing(doing.clone()));
         assert_eq!(live.doing("1", "a"), Some(doing));
         assert_eq!([live.doing("1", "b"), live.doing("2", "a")], [None, None]);
     }

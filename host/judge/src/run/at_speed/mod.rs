@@ -30,7 +30,7 @@ use super::plan::parts::Part;
 use super::plan::{AtSpeed, DECOY, JUDGED, Segment};
 use super::steps::Run;
 use crate::board::{Bank, Bursts, Datapath, RowTiming};
-use crate::progress::Step;
+use crate::progress::{Event, JudgedAtSpeed, Step};
 use crate::reference::correct;
 use crate::result::{CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst, NotExercised};
 use crate::tables::{Generation, datapath_of};
@@ -143,7 +143,7 @@ impl Run<'_> {
     fn judge_frames(&mut self, plan: &BurstPlan, tables: &[Generation]) -> Result<BurstSeen, End> {
         let (ends_early, progress) = (EndsEarly { when_wrong: self.plan.fail_fast, at: None }, self.progress);
         let mut told = |watched: &BurstSeen, _| {
-            progress.frame(&format!("{}, {} of {}", Step::AtSpeed, watched.frames, plan.frames));
+            progress.event(Event::AtSpeed(JudgedAtSpeed { frames: watched.frames, of: plan.frames }));
         };
         let (watched, ended) = self.watch(plan, tables, ends_early, &mut told);
         // What came under the board's own CRC is valid, however the burst ended.

@@ -14,6 +14,7 @@ use tokio::sync::broadcast::Receiver;
 
 use super::lane::LaneEvent;
 use crate::clock;
+use crate::engine::LaneDoing;
 use crate::web::live::{Became, Event, EventKind, FailedHook, Live, Now};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
@@ -91,10 +92,9 @@ fn news(live: &Live, visit: &Visit, told: &Event) -> String {
             let doing = state.run.as_ref().and_then(|run| live.doing(&state.lane, run));
             LaneEvent::new(visit, state, doing.as_ref())
         }),
-        EventKind::Doing(lane, doing) => event_text(id, "doing", &{
-            let told = super::lane::doing(visit, doing);
-            let rows = doing.rows.map(|(done, of)| [done, of]);
-            json!({ "lane": lane, "run": doing.run, "what": told.text, "lang": told.foreign, "rows": rows })
+        EventKind::Doing(LaneDoing { lane, run, what }) => event_text(id, "doing", &{
+            let (told, rows) = (visit.words.doing(what), what.rows());
+            json!({ "lane": lane, "run": run, "what": told.text, "lang": told.foreign, "rows": rows })
         }),
         // Only whoever scanned gets the whole answer: the scan may have been a badge.
         EventKind::Scan(Became { is_taken, lane, .. }) => {

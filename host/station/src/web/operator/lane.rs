@@ -7,10 +7,9 @@ use serde::Serialize;
 
 use super::shapes::{does, said, shape};
 use crate::clock;
-use crate::engine::LaneState;
+use crate::engine::{LaneDoing, LaneState};
 use crate::floor::{Act, Shown, Word};
 use crate::web::language::Sentence;
-use crate::web::live::Doing;
 use crate::web::routes::Who;
 use crate::web::visit::Visit;
 
@@ -29,7 +28,7 @@ pub(super) struct LaneEvent {
 
 impl LaneEvent {
     /// The event of this state, for `visit`.
-    pub(super) fn new(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> Self {
+    pub(super) fn new(visit: &Visit, state: &LaneState, doing: Option<&LaneDoing>) -> Self {
         let shown = state.shown.as_ref().filter(|_| state.state.is_verdict());
         let serial = state.serial.as_deref().unwrap_or_default();
         let word = said(visit, state.state);
@@ -55,7 +54,12 @@ pub(super) enum Scripted {
 }
 
 /// The lane.
-pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>, scripted: Scripted) -> Markup {
+pub(super) fn lane(
+    visit: &Visit,
+    state: &LaneState,
+    doing: Option<&LaneDoing>,
+    scripted: Scripted,
+) -> Markup {
     let shown = state.shown.as_ref().filter(|_| state.state.is_verdict());
     let word = said(visit, state.state);
     html! {
@@ -179,21 +183,13 @@ fn saved(visit: &Visit, shown: &Shown) -> Markup {
 }
 
 /// What the run does; the script puts in what is reported later.
-fn progress(visit: &Visit, lane: &str, of: Option<&Doing>) -> Markup {
-    let (rows, told) = (of.and_then(|of| of.rows), of.map(|of| doing(visit, of)));
+fn progress(visit: &Visit, lane: &str, of: Option<&LaneDoing>) -> Markup {
+    let (rows, told) = (of.and_then(|of| of.what.rows()), of.map(|of| visit.words.doing(&of.what)));
     html! {
         p.doing lang=[told.as_ref().and_then(|told| told.foreign)] {
             @if let Some(told) = &told { (plain(&told.text)) }
         }
         progress aria-labelledby={ "name-" (lane) } max=[rows.map(|(_, of)| of)] value=[rows.map(|(done, _)| done)] {}
-    }
-}
-
-/// What the run does, in words.
-pub(super) fn doing(visit: &Visit, doing: &Doing) -> Sentence {
-    match doing.rows {
-        Some(_) => Sentence { text: visit.say("lane.rows").to_owned(), foreign: None },
-        None => visit.words.doing(&doing.what),
     }
 }
 

@@ -1,9 +1,11 @@
-//! Several people at the pages of one station.
+//! Several people at the pages of one station, and what the engine tells everybody.
 
 use std::fs;
 
-use halfrow_station::engine::{Engine, LaneState, News};
+use halfrow_station::engine::{Engine, LaneDoing, LaneState, News};
 use halfrow_station::floor::Word;
+use halfrow_station::lane::Doing;
+use halfrow_station::record::StepOutcome;
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{Folder, Store};
 
@@ -39,4 +41,19 @@ fn the_record_names_whoever_scanned_the_board_and_not_whoever_scanned_last() {
     state("2", Word::Error);
     engine.close(None);
     assert_eq!(station.query("SELECT operator_id FROM run ORDER BY lane"), ["braun", "weber"]);
+}
+
+/// Scripts read what `lanes` prints.
+#[test]
+fn what_a_run_does_is_printed_with_its_lane_its_run_and_its_rows() {
+    let ended = Doing::Ended { step: "verify".to_owned(), outcome: StepOutcome::Failed };
+    for (what, printed) in [
+        (Doing::Rows(3, 9), r#""what":"rows","rows":[3,9]"#),
+        (ended, r#""what":"verify failed","rows":null"#),
+        (Doing::Board("HR1".to_owned()), r#""what":"the board is HR1","rows":null"#),
+    ] {
+        let news = News::Doing(LaneDoing { lane: "1".to_owned(), run: "a".to_owned(), what });
+        let printed = format!(r#"{{"news":"doing","lane":"1","run":"a",{printed}}}"#);
+        assert_eq!(serde_json::to_string(&news).unwrap(), printed);
+    }
 }

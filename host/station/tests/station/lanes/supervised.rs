@@ -32,7 +32,7 @@ impl Attendant for Slow {
 }
 
 /// Both messages have arrived before the first one is taken.
-const TWO: &str = r#"{"told":"doing","what":"frames"}\n{"told":"done"}\n"#;
+const TWO: &str = r#"{"told":"frame","name":"frames"}\n{"told":"done"}\n"#;
 
 /// The first message of the program's own lane.
 fn begun() -> String {
@@ -98,7 +98,7 @@ fn a_lane_that_closes_its_output_and_does_not_end_is_killed_for_that() {
 /// Such as one whose step goes round in a circle: it would keep its board for ever.
 #[test]
 fn a_lane_that_takes_too_long_is_killed_however_much_it_tells() {
-    let doing = r#"printf '{"told":"doing","what":"frames"}\n'; sleep 0.1"#;
+    let doing = r#"printf '{"told":"frame","name":"frames"}\n'; sleep 0.1"#;
     let patience = Patience { silence: HANG, whole: Duration::from_secs(1), tries: 2 };
     let ends = |rest: &str, patience| {
         let lane = format!("printf '{}'\n{rest}\nprintf '{TWO}'\nread -r more\n", begun());
@@ -117,7 +117,7 @@ fn a_lane_that_takes_too_long_is_killed_however_much_it_tells() {
 fn what_a_lane_tells_is_written_down_up_to_64_mib() {
     let place = folder();
     let long =
-        "printf '{\"told\":\"doing\",\"what\":\"'; head -c 30000000 /dev/zero | tr '\\0' x; printf '\"}\\n'";
+        "printf '{\"told\":\"frame\",\"name\":\"'; head -c 30000000 /dev/zero | tr '\\0' x; printf '\"}\\n'";
     let lane = format!("printf '{}'\n{long}\n{long}\n{long}\nprintf '{TWO}'\nread -r more\n", begun());
     let patience = Patience { silence: HANG, whole: HANG, tries: 2 };
     let end = end_in(place.path(), (&lane, String::new()), patience, &mut Slow(Duration::ZERO));

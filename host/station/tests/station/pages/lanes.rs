@@ -14,9 +14,14 @@ struct Live(BufReader<TcpStream>);
 
 impl Live {
     fn of(serving: &Serving) -> Self {
+        Self::in_language(serving, "en")
+    }
+
+    fn in_language(serving: &Serving, language: &str) -> Self {
         let mut stream = TcpStream::connect(("127.0.0.1", serving.port)).unwrap();
         stream.set_read_timeout(Some(HANG)).unwrap();
-        write!(stream, "GET /live HTTP/1.1\r\nhost: 127.0.0.1:{}\r\n\r\n", serving.port).unwrap();
+        let host = format!("host: 127.0.0.1:{}\r\naccept-language: {language}", serving.port);
+        write!(stream, "GET /live HTTP/1.1\r\n{host}\r\n\r\n").unwrap();
         Self(BufReader::new(stream))
     }
 
@@ -74,6 +79,29 @@ fn news_begin_with_everything_and_have_no_gap_and_every_verdict_has_its_record()
     let stored = station.query(&format!("SELECT verdict || record_sha256 FROM run WHERE id = '{run}'"));
     assert_eq!(stored, [format!("PASS{}", verdict["record_sha256"].as_str().unwrap())]);
     assert!(verdict["html"].as_str().unwrap().contains(SERIALS[0]));
+}
+
+/// Plans name their steps as they like.
+#[test]
+fn a_step_that_is_named_like_something_that_a_run_does_is_shown_by_its_name() {
+    for (name, ended) in [
+        ("cable that failed", "cable that failed: bestanden"),
+        ("the board is on", "the board is on: bestanden"),
+        ("testing the link", "testing the link: bestanden"),
+    ] {
+        let named = format!("kind = \"verify\"\nname = \"{name}\"");
+        let station = Station::private(1).where_instead("plan.toml", "kind = \"verify\"", &named);
+        let serving = station.serve();
+        let mut live = Live::in_language(&serving, "de");
+        serving.here().post("/scan", &[("text", SERIALS[0])]).until_taken();
+        let mut what = Vec::new();
+        while what.last().is_none_or(|last| last != ended) {
+            let (_, event, said) = live.next();
+            assert!(event != "lane" || said["verdict"].is_null(), "{ended}: {what:?}");
+            what.extend((event == "doing").then(|| said["what"].as_str().unwrap().to_owned()));
+        }
+        assert!(what.iter().any(|what| what == name), "{name}: {what:?}");
+    }
 }
 
 /// The board in the lane is a file, which can be taken away. It is no serial port, so its run is ERROR.

@@ -336,7 +336,7 @@ fn a_run_that_is_stopped_tells_with_its_figures_that_samples_differed_by_then() 
     let text = PLAN.replace("timeout = 60", "timeout = 60\nrepeat = 1000");
     let frames = AtomicUsize::new(0);
     let is_last = |message: &Message| {
-        let is_frame = matches!(message, Message::Doing { what } if what == "builtin:noise");
+        let is_frame = matches!(message, Message::Frame { name } if name == "builtin:noise");
         is_frame && frames.fetch_add(1, Ordering::Relaxed) == 40
     };
     let steps = stopped(text, "mock,fault=stuck-data".to_owned(), is_last);

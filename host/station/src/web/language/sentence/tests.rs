@@ -1,10 +1,12 @@
 //! What is said, in each language.
 
+use halfrow::progress::{JudgedAtSpeed, Step};
 use serde_json::json;
 
 use super::*;
 use crate::floor::{Refusal, ScanError};
-use crate::record::TEST_AGAIN;
+use crate::lane::Doing;
+use crate::record::{StepOutcome, TEST_AGAIN};
 use crate::said::Saying;
 use crate::web::language::of;
 
@@ -290,19 +292,22 @@ fn what_the_station_asks_for_is_told_in_the_language() {
 /// As the judge counts frames at speed, and as a lane says how a step ended and which board it is.
 #[test]
 fn what_a_run_does_is_told_in_the_language_with_its_figures() {
-    let told = |language, what: &str| {
-        let Sentence { text, foreign } = of(Some(language), None).doing(what);
+    let told = |language, what: Doing| {
+        let Sentence { text, foreign } = of(Some(language), None).doing(&what);
         (text, foreign)
     };
     let own = |text: &str| (text.to_owned(), None);
-    let speed = "frames at the full pixel clock";
-    assert_eq!(told("de", speed), own("Bilder mit vollem Pixeltakt"));
-    assert_eq!(told("de", &format!("{speed}, 2 of 12")), own("Bilder mit vollem Pixeltakt: 2 von 12"));
-    assert_eq!(told("zh", &format!("{speed}, 2 of 12")), own("全像素时钟下的帧：2/12"));
-    assert_eq!(told("en", &format!("{speed}, 2 of 12")), own("frames at the full pixel clock: 2 of 12"));
-    assert_eq!(told("de", "verify failed"), own("verify: nicht bestanden"));
-    assert_eq!(told("zh", "identity passed"), own("identity：通过"));
-    assert_eq!(told("de", "flat field"), ("flat field".to_owned(), Some("en")));
+    let some = || Doing::AtSpeed(JudgedAtSpeed { frames: 2, of: 12 });
+    assert_eq!(told("de", Doing::Judging(Step::AtSpeed)), own("Bilder mit vollem Pixeltakt"));
+    assert_eq!(told("de", some()), own("Bilder mit vollem Pixeltakt: 2 von 12"));
+    assert_eq!(told("zh", some()), own("全像素时钟下的帧：2/12"));
+    assert_eq!(told("en", some()), own("frames at the full pixel clock: 2 of 12"));
+    let ended = |step: &str, outcome| Doing::Ended { step: step.to_owned(), outcome };
+    assert_eq!(told("de", ended("verify", StepOutcome::Failed)), own("verify: nicht bestanden"));
+    assert_eq!(told("zh", ended("identity", StepOutcome::Passed)), own("identity：通过"));
+    assert_eq!(told("de", Doing::Named("flat field".to_owned())), ("flat field".to_owned(), Some("en")));
+    assert_eq!(told("de", Doing::Place("cam-1".to_owned())), own("wartet auf den Ort cam-1 von labgrid"));
+    assert_eq!(told("zh", Doing::Place("cam-1".to_owned())), own("等待 labgrid 的位置 cam-1"));
 }
 
 #[test]
