@@ -161,7 +161,7 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     for sink in &mut sinks {
         sent += all(&store, &mut **sink)?.sent;
     }
-    let mut left = store.with(|store| Snapshot::take(store.folder())?.unsent())?;
+    let mut left = Snapshot::take(store.folder())?.unsent()?;
     // What was for former sinks is not sent to them any more.
     left.retain(|unsent| sinks.iter().any(|sink| sink.name() == unsent.sink));
     if sent == 0 && left.is_empty() {

@@ -22,7 +22,7 @@ use crate::labgrid;
 use crate::presence::USB;
 use crate::said::{Said, Saying};
 use crate::settings::{PlanFile, Settings};
-use crate::store::{AgainError, Folder, InLane, Owed};
+use crate::store::{AgainError, InLane, Owed};
 
 /// How often to check which boards are there.
 const LOOK: Duration = Duration::from_millis(500);
@@ -139,14 +139,14 @@ impl AtWork {
 
     /// What a lane owes its shift, as the store says. While that cannot be found out, the lane is out of service.
     fn owed(&self, lane: usize) -> (Option<Owes>, Known) {
-        let Settings { name, data, lanes, plans, .. } = &self.shared.settings;
+        let Settings { name, lanes, plans, .. } = &self.shared.settings;
         let (now_ms, mut until_ms) = (clock::now_ms(), i64::MAX);
         let Some(lane) = lanes.get(lane) else { return (None, Known::Between(now_ms, until_ms)) };
         for &plan in &lane.plans {
             let Some(PlanFile { plan: of, .. }) = plans.get(plan) else { continue };
             // A store in trouble takes its time for each question.
             self.works();
-            match Folder::new(data).owed(&InLane::of(name, &lane.name, of), now_ms) {
+            match self.shared.store.folder().owed(&InLane::of(name, &lane.name, of), now_ms) {
                 Ok(checked) => {
                     until_ms = until_ms.min(checked.until_ms);
                     if let Some(Owed { serial, why }) = checked.owed {
@@ -289,9 +289,8 @@ impl AtWork {
         let PlanFile { plan, .. } = self.shared.settings.plans.get(of.plan)?;
         let asked = &mut self.lanes.get_mut(lane)?.asked;
         let was_answered = asked.is_answered(of, Instant::now());
-        let folder = Folder::new(&self.shared.settings.data);
-        let settings = &self.shared.settings;
-        if let Some(why) = unsent::refuses(settings, &folder) {
+        let (folder, settings) = (self.shared.store.folder(), &self.shared.settings);
+        if let Some(why) = unsent::refuses(settings, folder) {
             return Some(why);
         }
         match folder.again(plan, &of.serial, "scan it once more", settings.is_green_at_plant()) {

@@ -23,7 +23,7 @@ use crate::record::DeviceSeen;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
 use crate::settings::{Hook, Settings};
-use crate::store::{Folder, SharedStore};
+use crate::store::SharedStore;
 
 /// How long to wait before trying again to save a result.
 const AGAIN: Duration = Duration::from_secs(2);
@@ -148,11 +148,11 @@ fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
     if !shared.settings.is_green_at_plant() {
         return Event::Ended(shown(saved));
     }
-    let (folder, until) = (Folder::new(&shared.settings.data), Instant::now() + patience);
-    match awaited(&folder, &saved.record.run.id, &|| Instant::now() >= until) {
+    let (folder, until) = (shared.store.folder(), Instant::now() + patience);
+    match awaited(folder, &saved.record.run.id, &|| Instant::now() >= until) {
         Ok(Sent::Yes) => Event::Ended(shown(saved)),
         Ok(Sent::NotYet) => {
-            Event::NotAtPlant { why: Said { causes: needs_person(&folder), ..Saying::NotAtPlant.into() } }
+            Event::NotAtPlant { why: Said { causes: needs_person(folder), ..Saying::NotAtPlant.into() } }
         }
         Ok(Sent::Refused(why)) => Event::NotAtPlant { why },
         Err(error) => unsaved(&error),

@@ -32,9 +32,7 @@ pub use threads::{Outbox, OutboxError};
 use crate::clock;
 use crate::guard::guarded;
 use crate::said::Said;
-use crate::store::{
-    Backlog, Entry, Folder, LONGEST_WAIT_MS, Parcel, SharedStore, Snapshot, StoreError, Tried,
-};
+use crate::store::{Backlog, Entry, LONGEST_WAIT_MS, Parcel, SharedStore, Snapshot, StoreError, Tried};
 use quiet::Quiet;
 
 /// How often to check whether there is something to send.
@@ -101,7 +99,7 @@ pub struct Round {
 /// # Errors
 /// [`StoreError`] when the store cannot be read or written. What was sent is then sent again, which changes nothing.
 pub fn round(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) -> Result<Round, StoreError> {
-    let due = folder(store).due(sink.name(), clock::now_ms(), LONGEST_WAIT_MS)?;
+    let due = store.folder().due(sink.name(), clock::now_ms(), LONGEST_WAIT_MS)?;
     let round = given(store, sink, due, |name, entry, why| standing.refused(name, entry, why))?;
     if round.sent + round.failed > 0 && !round.is_away {
         standing.there(sink.name(), round.sent, || left(store, sink));
@@ -119,17 +117,13 @@ pub fn all(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError
     let (mut all, begun_ms) = (Round::default(), clock::now_ms());
     loop {
         // What is tried from here on is due again only after `begun_ms`.
-        let due = folder(store).due(sink.name(), begun_ms, i64::MAX)?;
+        let due = store.folder().due(sink.name(), begun_ms, i64::MAX)?;
         if due.is_empty() || all.is_away {
             return Ok(all);
         }
         let Round { sent, failed, is_away } = given(store, sink, due, |_, _, _| ())?;
         all = Round { sent: all.sent + sent, failed: all.failed + failed, is_away };
     }
-}
-
-fn folder(store: &SharedStore) -> Folder {
-    store.with(|store| store.folder().clone())
 }
 
 /// Gives `sink` what is `due`; `refused` is called for each entry that it has not taken.
@@ -139,12 +133,11 @@ fn given(
     due: Vec<Entry>,
     mut refused: impl FnMut(&str, &Entry, &Undelivered),
 ) -> Result<Round, StoreError> {
-    let folder = folder(store);
     let mut round = Round::default();
     let (mut tried, mut kept) = (Vec::new(), None::<Instant>);
     let keep = |name: &str, tried: &[_]| store.with(|store| store.tried(name, tried, clock::now_ms()));
     for entry in due {
-        let taken = match folder.parcel(&entry) {
+        let taken = match store.folder().parcel(&entry) {
             Ok(parcel) => taken(sink, &parcel),
             Err(error) => Err(Undelivered::NotNow(Said::of(&error))),
         };
@@ -191,7 +184,7 @@ fn became(entry: &Entry, taken: Result<(), Undelivered>) -> Tried {
 }
 
 fn left(store: &SharedStore, sink: &dyn Sink) -> Result<Backlog, StoreError> {
-    Snapshot::take(&folder(store))?.backlog(sink.name())
+    Snapshot::take(store.folder())?.backlog(sink.name())
 }
 
 fn beat(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) {
@@ -274,7 +267,7 @@ fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::{Deed, Kind};
+    use crate::store::{Deed, Folder, Kind};
 
     /// docs/station-results.md: a second, then two, four, up to five minutes.
     #[test]

@@ -2,7 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-use super::folder;
 use crate::clock;
 use crate::store::{SharedStore, StoreError};
 
@@ -25,7 +24,7 @@ impl Quiet {
     pub(super) fn of(store: &SharedStore, sink: &str) -> Result<Self, StoreError> {
         // What comes after this is a change, if it is too late to be found below.
         let (changes, now) = (store.with(|store| store.changes()), Instant::now());
-        let next_ms = folder(store).next_due(sink)?;
+        let next_ms = store.folder().next_due(sink)?;
         let wait = next_ms.map_or(LONGEST, |next_ms| {
             let wait_ms = next_ms.saturating_sub(clock::now_ms());
             Duration::from_millis(u64::try_from(wait_ms).unwrap_or(0)).min(LONGEST)
@@ -61,7 +60,7 @@ mod tests {
         note(&store);
         assert!(!empty.lasts(&store), "something was kept");
         assert!(!Quiet::of(&store, "mes").unwrap().lasts(&store), "it is due");
-        let entry = folder(&store).due("mes", clock::now_ms(), i64::MAX).unwrap().remove(0);
+        let entry = store.folder().due("mes", clock::now_ms(), i64::MAX).unwrap().remove(0);
         let tried = |wait_ms: i64| {
             let again = Tried::Again { next_ms: clock::now_ms() + wait_ms, said: Saying::PlanChanged.into() };
             store.with(|store| store.tried("mes", &[(entry.clone(), again)], clock::now_ms())).unwrap();

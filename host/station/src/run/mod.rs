@@ -161,8 +161,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         job: order.job.cloned(),
     };
     let planned = plan_record(order.plan);
-    let folder = store.with(|store| store.folder().clone());
-    let spool = folder.spool(&head.id);
+    let spool = store.folder().spool(&head.id);
     // Whoever finds the run open finds its claim, too.
     recovered::note_claim(&spool, head.job.as_ref());
     let entered = store.with(|store| store.begin(head.clone(), &planned));
@@ -181,7 +180,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     record.conclusion = record.conclusion.stopped_since(why);
     let steps = selected.steps.len() as u32;
     let finish = |record: &_| store.with(|store| store.finish(record, steps));
-    save(&folder, record, attached, finish)
+    save(store.folder(), record, attached, finish)
 }
 
 /// Refuses a plan of which a file is another one than when it was read.

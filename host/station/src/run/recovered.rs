@@ -49,12 +49,11 @@ pub(super) fn not_entered(
     watch: &mut dyn Watch,
 ) -> RunError {
     let source = Box::new(error);
-    let (open, spool) = store.with(|store| (store.open_runs(), store.folder().spool(&head.id)));
-    if open.is_ok_and(|open| open.iter().any(|open| open.run.id == head.id)) {
+    if store.with(Store::open_runs).is_ok_and(|open| open.iter().any(|open| open.run.id == head.id)) {
         watch.hear(Stage::Begun(head));
         return RunError::Unsaved { run: head.id.clone(), source };
     }
-    drop_claim(&spool);
+    drop_claim(&store.folder().spool(&head.id));
     RunError::NotBegun(source)
 }
 
@@ -132,9 +131,8 @@ pub fn recover_run(store: &SharedStore, run: &str) -> Result<Saved, RunError> {
     let unsaved = |source| RunError::Unsaved { run: run.to_owned(), source: Box::new(source) };
     let open = store.with(Store::open_runs).map_err(unsaved)?;
     if let Some(open) = open.into_iter().find(|open| open.run.id == run) {
-        let folder = store.with(|store| store.folder().clone());
         let why = |tries| Saying::SavedTooLate { tries };
-        return closed(&folder, open, why, |record| store.with(|store| store.finish(record, 0)));
+        return closed(store.folder(), open, why, |record| store.with(|store| store.finish(record, 0)));
     }
     let (stored, record) = store.with(|store| store.settled(run)).map_err(unsaved)?;
     Ok(Saved { record, stored, saved_ms: clock::now_ms() })

@@ -20,7 +20,7 @@ use crate::plan::Plan;
 use crate::said::Said;
 use crate::secret::SecretError;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Deed, Folder, PlantAddress, PlantLink, Snapshot, Store, StoreError};
+use crate::store::{Deed, PlantAddress, PlantLink, Snapshot, Store, StoreError};
 
 /// How many plans are named in the head of a page.
 const NAMED: usize = 2;
@@ -235,9 +235,10 @@ impl App {
         look: impl FnOnce(&Snapshot) -> Result<T, StoreError> + Send + 'static,
     ) -> Result<Result<T, StoreError>, Trouble> {
         match &self.0.source {
-            Source::Station(_) => {
-                let folder = Folder::new(&self.0.settings.data);
-                self.blocking(visit, move || Snapshot::at_work(&folder).and_then(|now| look(&now))).await
+            Source::Station(lanes) => {
+                let store = lanes.engine.store();
+                self.blocking(visit, move || Snapshot::at_work(store.folder()).and_then(|now| look(&now)))
+                    .await
             }
             Source::Plant(plant) => {
                 let plant = plant.clone();

@@ -248,9 +248,8 @@ impl Work<'_> {
         };
         self.refuse_unit(claim, plan)?;
         let (station, lane) = (&self.worker.station, &claim.lease.board);
-        let counts = self.store.with(|store| {
-            store.folder().counts(&InLane::of(station, lane, plan), claim.serial(), clock::now_ms())
-        });
+        let in_lane = InLane::of(station, lane, plan);
+        let counts = self.store.folder().counts(&in_lane, claim.serial(), clock::now_ms());
         let job = JobClaim { id: claim.job.clone(), fence: claim.fence };
         let order = Order {
             plan,
@@ -321,8 +320,7 @@ impl Work<'_> {
     /// The state of a run at the plant, as [`awaited`] says. If the store cannot say, it is not waited for: the run is
     /// saved, and sent when the outbox can.
     fn sent(&self, run: &str, is_over: &dyn Fn() -> bool) -> Sent {
-        let folder = self.store.with(|store| store.folder().clone());
-        awaited(&folder, run, is_over).unwrap_or_else(|error| {
+        awaited(self.store.folder(), run, is_over).unwrap_or_else(|error| {
             tracing::warn!(
                 "whether the plant has the run {run} is not known: {}",
                 Said::of(&error).with_codes()
