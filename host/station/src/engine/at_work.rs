@@ -13,7 +13,7 @@ use super::hook_queue::{NotStarted, Shows};
 use super::known::{Known, KnownOfLane};
 use super::lane_threads::{self, Shared, StopAsked};
 use super::lane_work::LaneWork;
-use super::news::{LaneDoing, LaneState, News};
+use super::news::{Became, FailedHook, LaneDoing, LaneState, News};
 use super::unsent;
 use super::{Input, LaneEvent, LiveState, in_time};
 use crate::clock;
@@ -228,7 +228,7 @@ impl AtWork {
             Err(error) => (false, None, None, Said::of(&error)),
         };
         let name = lane.and_then(|lane| Some(self.floor.lanes().get(lane)?.name().to_owned()));
-        self.tell(&News::Scan { number, scanned, is_taken, lane: name, said });
+        self.tell(&News::Scan(Became { number, scanned, is_taken, lane: name, said }));
         if let Some(lane) = lane {
             self.publish(lane);
             self.effect(lane, effect);
@@ -254,7 +254,7 @@ impl AtWork {
                 // Pages show it only until the next board is judged in the lane.
                 let unit = serial.as_ref().map_or_else(String::new, |serial| format!(", {serial}"));
                 tracing::warn!("lane {lane}{unit}: {}", said.with_codes());
-                self.tell(&News::Hook { lane, run, serial, said });
+                self.tell(&News::Hook(FailedHook { lane, run, serial, said }));
             }
         }
     }

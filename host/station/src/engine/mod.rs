@@ -31,7 +31,7 @@ use parking_lot::Mutex;
 
 pub use figures::{Figures, Histogram};
 pub(crate) use hooks::HookError;
-pub use news::{LaneDoing, LaneState, News};
+pub use news::{Became, FailedHook, LaneDoing, LaneState, News};
 
 use crate::floor::{Act, Event, ScanError};
 use crate::guard::guarded;

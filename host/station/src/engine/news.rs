@@ -20,33 +20,9 @@ pub enum News {
     /// What a lane's run does.
     Doing(LaneDoing),
     /// What became of a scan.
-    Scan {
-        /// The number that it came with.
-        number: u64,
-        /// What was scanned.
-        scanned: String,
-        /// Whether it was taken.
-        is_taken: bool,
-        /// The lane that it went to.
-        lane: Option<String>,
-        /// What was understood, or why it was refused.
-        #[serde(serialize_with = "said::as_text")]
-        said: Said,
-    },
+    Scan(Became),
     /// A hook did not do what it should have done. The verdict stands.
-    Hook {
-        /// The lane.
-        lane: String,
-        /// The run; `None` when the hook should have shown that there is no verdict any more.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        run: Option<String>,
-        /// The serial number of that run's unit, which may have left the lane since.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        serial: Option<String>,
-        /// What went wrong.
-        #[serde(serialize_with = "said::as_text")]
-        said: Said,
-    },
+    Hook(FailedHook),
 }
 
 /// What a lane's run does.
@@ -59,6 +35,38 @@ pub struct LaneDoing {
     /// What.
     #[serde(flatten)]
     pub what: Doing,
+}
+
+/// The result of a scan or of an act.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Became {
+    /// The number that it came with.
+    pub number: u64,
+    /// What was scanned.
+    pub scanned: String,
+    /// Whether it was taken.
+    pub is_taken: bool,
+    /// The lane that it went to.
+    pub lane: Option<String>,
+    /// What was understood, or why it was refused.
+    #[serde(serialize_with = "said::as_text")]
+    pub said: Said,
+}
+
+/// A hook that failed, and the unit that it was for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FailedHook {
+    /// The lane.
+    pub lane: String,
+    /// The run; `None` when the hook should have shown that there is no verdict any more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run: Option<String>,
+    /// The serial number of that run's unit, which may have left the lane since.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub serial: Option<String>,
+    /// What went wrong.
+    #[serde(serialize_with = "said::as_text")]
+    pub said: Said,
 }
 
 /// The state of a lane.
@@ -145,11 +153,13 @@ mod tests {
     #[test]
     fn a_slow_listener_is_let_go_and_the_others_hear_everything() {
         let mut listeners = Listeners::default();
-        let news = || News::Hook {
-            lane: "1".to_owned(),
-            run: Some("r".to_owned()),
-            serial: Some("S1".to_owned()),
-            said: Saying::OutByPerson.into(),
+        let news = || {
+            News::Hook(FailedHook {
+                lane: "1".to_owned(),
+                run: Some("r".to_owned()),
+                serial: Some("S1".to_owned()),
+                said: Saying::OutByPerson.into(),
+            })
         };
         let (slow, quick) = (listeners.add(std::iter::empty()), listeners.add(std::iter::once(news())));
         quick.recv().unwrap();

@@ -14,10 +14,9 @@ use parking_lot::Mutex;
 use tokio::sync::{broadcast, oneshot};
 
 use crate::clock;
-use crate::engine::{Engine, LaneDoing, LaneState, News, in_time};
+use crate::engine::{Became, Engine, FailedHook, LaneDoing, LaneState, News, in_time};
 use crate::floor::{ScanError, Word};
 use crate::guard::guarded;
-use crate::said::Said;
 
 /// How often there is a beat.
 const BEAT: Duration = Duration::from_secs(1);
@@ -27,32 +26,12 @@ const FRESH: Duration = Duration::from_secs(5);
 /// How many events a page may lag behind. One that lags further is dropped, and connects anew.
 const BACKLOG: usize = 1024;
 
-/// The result of a scan or of an act.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Became {
-    pub(super) number: u64,
-    pub(super) scanned: String,
-    pub(super) is_taken: bool,
-    pub(super) lane: Option<String>,
-    pub(super) said: Said,
-}
-
-/// A hook that failed, and the unit that it was for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct FailedHook {
-    pub(super) serial: Option<String>,
-    pub(super) said: Said,
-}
-
 /// An event for pages.
 #[derive(Clone, Debug)]
 pub(super) enum EventKind {
     /// A beat, with its moment.
     Beat(String),
-    Lane(Box<LaneState>),
-    Doing(LaneDoing),
-    Scan(Became),
-    Hook(String, FailedHook),
+    News(Box<News>),
 }
 
 /// An event with its number. A page that misses a number takes everything anew.
@@ -73,6 +52,29 @@ pub(super) struct Now {
     pub(super) doing: BTreeMap<String, LaneDoing>,
     /// The last hook of each lane that failed since the lane came to show what it shows.
     pub(super) failed: BTreeMap<String, FailedHook>,
+}
+
+impl Now {
+    fn take(&mut self, news: &News) {
+        match news {
+            News::Lane(state) => {
+                let is_over = state.run.is_none();
+                if is_over {
+                    self.doing.remove(&state.lane);
+                }
+                if let Some(known) = self.lanes.iter_mut().find(|known| known.lane == state.lane) {
+                    let is_other = shows(known) != shows(state);
+                    known.clone_from(state);
+                    if is_other {
+                        self.failed.remove(&state.lane);
+                    }
+                }
+            }
+            News::Doing(doing) => drop(self.doing.insert(doing.lane.clone(), doing.clone())),
+            News::Hook(failed) => drop(self.failed.insert(failed.lane.clone(), failed.clone())),
+            News::Scan(_) => {}
+        }
+    }
 }
 
 /// The source of all events for pages.
@@ -164,16 +166,8 @@ impl Live {
     }
 
     fn hear(&self, news: News) {
-        let what = match news {
-            News::Lane(state) => EventKind::Lane(Box::new(state)),
-            News::Doing(doing) => EventKind::Doing(doing),
-            News::Scan { number, scanned, is_taken, lane, said } => {
-                EventKind::Scan(Became { number, scanned, is_taken, lane, said })
-            }
-            News::Hook { lane, serial, said, .. } => EventKind::Hook(lane, FailedHook { serial, said }),
-        };
-        let answered = if let EventKind::Scan(became) = &what { Some(became.clone()) } else { None };
-        self.tell(what);
+        let answered = if let News::Scan(became) = &news { Some(became.clone()) } else { None };
+        self.tell(EventKind::News(Box::new(news)));
         if let Some(became) = answered {
             let mut asked = self.asked.lock();
             // A page that is gone does not wait for its scan any more.
@@ -200,23 +194,8 @@ impl Live {
 
     fn tell(&self, what: EventKind) {
         let mut now = self.now.lock();
-        match &what {
-            EventKind::Lane(state) => {
-                let is_over = state.run.is_none();
-                if is_over {
-                    now.doing.remove(&state.lane);
-                }
-                if let Some(known) = now.lanes.iter_mut().find(|known| known.lane == state.lane) {
-                    let is_other = shows(known) != shows(state);
-                    known.clone_from(state);
-                    if is_other {
-                        now.failed.remove(&state.lane);
-                    }
-                }
-            }
-            EventKind::Doing(doing) => drop(now.doing.insert(doing.lane.clone(), doing.clone())),
-            EventKind::Hook(lane, failed) => drop(now.failed.insert(lane.clone(), failed.clone())),
-            EventKind::Beat(_) | EventKind::Scan(_) => {}
+        if let EventKind::News(news) = &what {
+            now.take(news);
         }
         now.id += 1;
         // This fails when no page is open.
@@ -305,7 +284,7 @@ mod tests {
     fn what_a_run_does_is_known_while_it_does_it_and_is_not_that_of_another_run() {
         let live = Live::of(Vec::new());
         let doing = LaneDoing { lane: "1".to_owned(), run: "a".to_owned(), what: Doing::Rows(3, 9) };
-        live.tell(EventKind::Doing(doing.clone()));
+        live.hear(News::Doing(doing.clone()));
         assert_eq!(live.doing("1", "a"), Some(doing));
         assert_eq!([live.doing("1", "b"), live.doing("2", "a")], [None, None]);
     }

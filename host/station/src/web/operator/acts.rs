@@ -13,12 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use super::page;
 use crate::clock::Moment;
-use crate::engine::Engine;
+use crate::engine::{Became, Engine};
 use crate::floor::{Act, CHOSEN, Scan, ScanError};
 use crate::said::{Said, Saying};
 use crate::settings::PlanFile;
 use crate::web::access::Claimant;
-use crate::web::live::Became;
 use crate::web::login::{Peer, identified, logged_in};
 use crate::web::routes::Who;
 use crate::web::state::{App, Lanes};

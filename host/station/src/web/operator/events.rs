@@ -14,8 +14,8 @@ use tokio::sync::broadcast::Receiver;
 
 use super::lane::LaneEvent;
 use crate::clock;
-use crate::engine::LaneDoing;
-use crate::web::live::{Became, Event, EventKind, FailedHook, Live, Now};
+use crate::engine::{Became, FailedHook, LaneDoing, News};
+use crate::web::live::{Event, EventKind, Live, Now};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -77,35 +77,38 @@ async fn is_still(app: &App, visit: &Visit) -> bool {
 fn snapshot(mark: &str, visit: &Visit, now: &Now) -> String {
     let event = |state| LaneEvent::new(visit, state, now.doing.get(&state.lane));
     let lanes: Vec<_> = now.lanes.iter().map(event).collect();
-    let hooks: Vec<_> = now.failed.iter().map(|(lane, failed)| hook(visit, lane, failed)).collect();
+    let hooks: Vec<_> = now.failed.values().map(|failed| hook(visit, failed)).collect();
     event_text(now.id, "snapshot", &json!({ "mark": mark, "beat": now.beat, "lanes": lanes, "hooks": hooks }))
 }
 
 fn news(live: &Live, visit: &Visit, told: &Event) -> String {
     let id = told.id;
-    match &told.what {
-        EventKind::Beat(beat) => event_text(id, "beat", &{
+    let news = match &told.what {
+        EventKind::Beat(beat) => {
             let clock = clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string();
-            json!({ "clock": clock, "beat": beat })
-        }),
-        EventKind::Lane(state) => event_text(id, "lane", &{
+            return event_text(id, "beat", &json!({ "clock": clock, "beat": beat }));
+        }
+        EventKind::News(news) => news,
+    };
+    match &**news {
+        News::Lane(state) => event_text(id, "lane", &{
             let doing = state.run.as_ref().and_then(|run| live.doing(&state.lane, run));
             LaneEvent::new(visit, state, doing.as_ref())
         }),
-        EventKind::Doing(LaneDoing { lane, run, what }) => event_text(id, "doing", &{
+        News::Doing(LaneDoing { lane, run, what }) => event_text(id, "doing", &{
             let (told, rows) = (visit.words.doing(what), what.rows());
             json!({ "lane": lane, "run": run, "what": told.text, "lang": told.foreign, "rows": rows })
         }),
         // Only whoever scanned gets the whole answer: the scan may have been a badge.
-        EventKind::Scan(Became { is_taken, lane, .. }) => {
+        News::Scan(Became { is_taken, lane, .. }) => {
             event_text(id, "scan", &json!({ "is_taken": is_taken, "lane": lane }))
         }
-        EventKind::Hook(lane, failed) => event_text(id, "hook", &hook(visit, lane, failed)),
+        News::Hook(failed) => event_text(id, "hook", &hook(visit, failed)),
     }
 }
 
 /// A hook that failed.
-fn hook(visit: &Visit, lane: &str, FailedHook { serial, said }: &FailedHook) -> Value {
+fn hook(visit: &Visit, FailedHook { lane, serial, said, .. }: &FailedHook) -> Value {
     json!({ "lane": lane, "serial": serial, "said": visit.words.tell(said).text })
 }
 
