@@ -2,6 +2,7 @@
 
 use std::fs::{OpenOptions, read_to_string};
 use std::io::{PipeReader, PipeWriter, Write as _};
+use std::net::{TcpListener, TcpStream};
 use std::os::fd::AsRawFd as _;
 use std::process::{Child, Stdio};
 use std::thread;
@@ -166,6 +167,31 @@ fn a_signal_ends_a_command_whose_board_waits_for_a_frame() {
         folder.halfrow(small("correct", &["in.pgm", "-o", "out", "--board", "mock", "--timeout", "0.1"]));
     assert_eq!(late.code, Some(3), "{}", late.stderr);
     assert!(late.stderr.contains("within its time limit"), "{}", late.stderr);
+}
+
+/// Nobody answers at the far end, as where the computer is off.
+#[test]
+fn a_signal_ends_a_run_that_waits_for_a_connection() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    // Once nobody else is let in, the system no longer answers either.
+    let connect = || TcpStream::connect_timeout(&address, Duration::from_millis(200)).ok();
+    let let_in: Vec<_> = std::iter::from_fn(connect).collect();
+    let board = format!("tcp:{address}");
+    let commands: [&[&str]; 2] = [&["verify"], &["soak", "--frames", "10"]];
+    for ((signal, code), command) in SIGNALS.into_iter().zip(commands.into_iter().cycle()) {
+        let folder = Folder::new();
+        let call = command.iter().copied().chain(["--report", "out", "--board", &board]);
+        let running = started(&folder, call);
+        // It takes the report's place right before it connects.
+        until_there_is(folder.path(), |name| name.contains("out"));
+        running.send(signal);
+        let ended = running.end();
+        assert_eq!(ended.code, Some(code), "{signal}: {}", ended.stderr);
+        assert!(ended.stderr.starts_with("error: stopped by a signal"), "{}", ended.stderr);
+        assert_eq!(folder.names("."), [""; 0]);
+    }
+    drop(let_in);
 }
 
 /// `timeout` signals a program, and then its whole group. On a busy computer the second signal may come too late for that.

@@ -184,8 +184,6 @@ impl RunArguments {
         let settings = &context.settings;
         self.check_files(inputs, record, context)?;
         let leased = self.board.target(settings);
-        // Not before: while the call waits for a board, there is no run whose time passes or that a signal must end in order.
-        let options = RunOptions { stop: self.board.stop(settings)?, ..options };
         if let Ok(target) = &leased {
             check_fault(target, &plan)?;
         }
@@ -194,6 +192,9 @@ impl RunArguments {
             Ok(target) => (target, self.board.candidate_of(settings, recording)),
             Err(failure) => (self.board.named(settings)?, Err(failure)),
         };
+        // Not before: while the call waits for a board or a connection, there is no run whose time passes or that a signal must
+        // end in order.
+        let options = RunOptions { stop: self.board.stop(settings)?, ..options };
         judge_and_report(candidate, &plan, &options, &target, outputs, context)
     }
 
