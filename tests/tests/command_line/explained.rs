@@ -69,6 +69,7 @@ fn nobody_is_sent_to_stream_frames_for_what_no_streamed_frame_tests() {
         "further-records",
         "counters-of-poor-links",
         "same-board",
+        "idle-time",
         "camera-pins",
     ];
     let told = explained(&codes).into_iter().filter(|it| it["of"] == "not-exercised");

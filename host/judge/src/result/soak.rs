@@ -33,6 +33,10 @@ pub struct SoakReport {
     pub asked: SoakLength,
     /// How long it took on the link's clock, in seconds.
     pub seconds: f64,
+    /// In how many of these seconds no frames were made: tables were changed, the board was away, or this computer stood still; 0 in
+    /// earlier reports.
+    #[serde(default)]
+    pub idle_seconds: f64,
     /// Bursts, each with its own content.
     pub bursts: u32,
     /// Frames judged.
@@ -67,6 +71,7 @@ impl SoakReport {
         Self {
             asked,
             seconds: 0.0,
+            idle_seconds: 0.0,
             bursts: 0,
             frames: 0,
             wrong: 0,
@@ -78,6 +83,12 @@ impl SoakReport {
             ended: None,
             chart: SoakChart::default(),
         }
+    }
+
+    /// Whether frames were made in less than nine tenths of the time that was asked for.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        matches!(self.asked, SoakLength::Time { .. }) && self.idle_seconds > self.seconds / 10.0
     }
 
     /// How many bursts with a difference are missing where the first `listed` of the differences are told.

@@ -65,6 +65,10 @@ pub(super) const fn act(part: &NotExercised) -> &'static str {
             "Make sure that nobody changed the board while it was away, or run again without a break; build an ECP5 with \
              `--serial` to give it a serial number."
         }
+        NotExercised::IdleTime { .. } => {
+            "Keep this computer awake (`systemd-inhibit`) and the program running, look at the report for times when the board was \
+             away, and run again."
+        }
         NotExercised::CameraPins {} => {
             "Look at lamps 3 to 6 and at the picture with a camera connected, as docs/first-board.md says: the frames of a \
              run enter and leave inside the FPGA."

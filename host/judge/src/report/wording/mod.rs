@@ -299,6 +299,9 @@ pub fn soak(soak: &SoakReport) -> String {
         SoakLength::Time { seconds } => format!("{time} of {}", span(seconds)),
         SoakLength::Frames { frames } => format!("{} asked for, {time}", count(frames, "frame")),
     };
+    if soak.is_idle() {
+        words.push_str(&format!(", with frames in {} of it", span(soak.seconds - soak.idle_seconds)));
+    }
     let judged = format!(": {} in {}", count(soak.frames, "frame"), count(soak.bursts, "burst"));
     words.push_str(&judged);
     let mut wrong = Vec::new();

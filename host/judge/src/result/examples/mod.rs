@@ -222,6 +222,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::FurtherRecords { filled: 1024 },
         NotExercised::CountersOfPoorLinks {},
         NotExercised::SameBoard {},
+        NotExercised::IdleTime { seconds: 55 },
         NotExercised::CameraPins {},
         NotExercised::Depths { bits: vec![8, 10] },
     ]

@@ -3,13 +3,14 @@
 use super::at_speed::seen_of_clock;
 use super::places::{named, numbered};
 use crate::result::NotExercised;
-use crate::words::hertz;
+use crate::words::{hertz, span};
 
 const CAMERA_PINS: &str = "the camera's connector and the pins to the image processor, because frames enter and leave \
                            inside the FPGA";
 
 /// The part in words, to complete the sentence "not exercised: …".
 #[must_use]
+#[expect(clippy::too_many_lines, reason = "one arm a code")]
 pub fn not_exercised(part: &NotExercised) -> String {
     match part {
         NotExercised::InputBits { bits } => format!("{} of the samples going in", numbered("bit", bits)),
@@ -47,6 +48,9 @@ pub fn not_exercised(part: &NotExercised) -> String {
         }
         NotExercised::SameBoard {} => {
             "whether the board that came back is the one that went away, because it has no serial number".to_owned()
+        }
+        NotExercised::IdleTime { seconds } => {
+            format!("{} of the soak, in which no frames were made", span(*seconds as f64))
         }
         NotExercised::CameraPins {} => CAMERA_PINS.to_owned(),
         NotExercised::Depths { bits } => depths(bits),

@@ -17,6 +17,9 @@ use super::played::Played;
 
 /// The longest burst, on the link's clock.
 pub(super) const LONGEST_BURST: Duration = Duration::from_secs(60);
+/// The longest time between two looks beyond that of the frames in it. If it was longer, this computer or the link stood still, and
+/// the board made no more frames than it can keep records of.
+const LONGEST_GAP: Duration = Duration::from_secs(1);
 /// The most frames of a burst: after these, frame numbers repeat, and content with them.
 const MOST_FRAMES: u32 = 1 << 16;
 
@@ -27,6 +30,10 @@ pub(super) struct SoakAccount {
     pub(super) change_would_show: bool,
     /// When it began, on the run's clock.
     begun: Duration,
+    /// For how long frames were made and looked at.
+    made: Duration,
+    /// The last look, on the run's clock.
+    looked_at: Duration,
     /// The first difference, with its frame counted from the beginning of the soak.
     first: Option<End>,
     /// The first difference that the link may have caused, since another session did not confirm it.
@@ -37,7 +44,8 @@ impl SoakAccount {
     /// A soak of length `asked` that begins at `begun` on the run's clock.
     pub(super) fn new(asked: SoakLength, begun: Duration) -> Self {
         let report = SoakReport::new(asked);
-        Self { report, change_would_show: false, begun, first: None, first_doubtful: None }
+        let (change_would_show, made, looked_at) = (false, Duration::ZERO, begun);
+        Self { report, change_would_show, begun, made, looked_at, first: None, first_doubtful: None }
     }
 
     /// The time that is left after `now`, on the run's clock; none if the soak is so many frames long.
@@ -78,12 +86,36 @@ impl SoakAccount {
         self.report.differences.len() < SoakReport::MOST_DIFFERENCES
     }
 
-    /// Adds what came up to `now` of a burst. `watched` is what was seen of it in all; `before` is what was already counted.
-    pub(super) fn add(&mut self, before: &mut SoakInterval, watched: &BurstSeen, now: Duration) -> Soaked {
+    /// Begins a burst at `now` on the run's clock.
+    pub(super) fn begin_burst(&mut self, now: Duration) {
+        self.looked_at = now;
+    }
+
+    /// Adds the time since the last look to that in which frames were made, up to `most`.
+    fn look(&mut self, now: Duration, most: Duration) {
+        self.made += now.saturating_sub(self.looked_at).min(most);
+        self.looked_at = now;
+    }
+
+    /// Adds the time that the host waited after a burst, so that its frames took theirs, beyond what the last look has added.
+    pub(super) fn pass(&mut self, time: Duration) {
+        self.made += time.saturating_sub(LONGEST_GAP);
+    }
+
+    /// Adds what came up to `now` of the burst `plan`. `watched` is what was seen of it in all; `before` is what was already
+    /// counted.
+    pub(super) fn add(
+        &mut self,
+        plan: &BurstPlan,
+        before: &mut SoakInterval,
+        watched: &BurstSeen,
+        now: Duration,
+    ) -> Soaked {
         let BurstSeen { frames, wrong, miscounted, .. } = *watched;
         let all = SoakInterval { frames: frames.into(), wrong: wrong.into(), miscounted: miscounted.into() };
         let new = all.without(*before);
         *before = all;
+        self.look(now, plan.time_of(new.frames as u32) + LONGEST_GAP);
         let time = now.saturating_sub(self.begun);
         self.report.frames += new.frames;
         self.report.wrong += new.wrong;
@@ -141,7 +173,9 @@ impl SoakAccount {
     /// 3. a difference that the link may have caused;
     /// 4. that there was no frame to judge.
     pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
-        self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
+        let time = now.saturating_sub(self.begun);
+        self.report.seconds = time.as_secs_f64();
+        self.report.idle_seconds = time.saturating_sub(self.made).as_secs_f64();
         match (self.first.take(), ended, self.first_doubtful.take()) {
             (Some(end), ended, _) => {
                 self.report.ended = ended.err().map(|ended| unasked(&ended));

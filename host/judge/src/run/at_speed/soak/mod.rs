@@ -11,7 +11,9 @@ use super::watched::{BurstSeen, EndsEarly, MiscountSeen};
 use super::{NONE, price, tables_late};
 use crate::board::Bursts;
 use crate::progress::{Event, Step};
-use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength, SoakReport};
+use crate::result::{
+    CheckName, Doubt, EqualAtSpeed, Finding, NotExercised, SoakInterval, SoakLength, SoakReport,
+};
 use crate::run::findings::exercised::Exercised;
 use crate::run::findings::{During, End};
 use crate::run::plan::{DECOY, JUDGED, Segment};
@@ -81,10 +83,12 @@ impl Run<'_> {
         let changes = account.change_would_show;
         let report = account.report;
         let SoakReport { frames, paused, held_back, .. } = report;
+        let idle = report.is_idle().then_some(NotExercised::IdleTime { seconds: report.idle_seconds as u64 });
         self.findings.soak = Some(report);
         ended?;
         let mut left = super::untested(changes, paused > 0);
         left.extend(self.clock_unseen());
+        left.extend(idle);
         self.note_right(paused, EqualAtSpeed { frames, held_back, ..NONE });
         Ok(Exercised { left, ..Exercised::default() })
     }
@@ -177,13 +181,17 @@ impl Run<'_> {
         }
         let ends_early = EndsEarly { when_wrong: account.wants_more(), at: Some(now + time) };
         let mut before = SoakInterval::default();
+        account.begin_burst(self.clock());
         let mut told = |watched: &BurstSeen, now| {
-            progress.event(Event::Soaked(account.add(&mut before, watched, earlier + now)));
+            progress.event(Event::Soaked(account.add(&plan, &mut before, watched, earlier + now)));
         };
         let (watched, ended) = self.watch(&plan, &tables, ends_early, &mut told);
         let ended = ended.and_then(|()| brought_frames(&plan, &watched, time));
-        let ended = ended.and_then(|()| self.pass_time(now + plan.time_of(watched.frames).min(time)));
+        let until = now + plan.time_of(watched.frames).min(time);
+        let passed = until.saturating_sub(self.board.now());
+        let ended = ended.and_then(|()| self.pass_time(until));
         told(&watched, self.board.now());
+        account.pass(passed);
         account.report.paused += u64::from(watched.paused);
         account.report.held_back += u64::from(watched.held_back);
         account.change_would_show =
