@@ -131,6 +131,18 @@ pub enum LinkError {
         /// When, on the link's clock.
         at: Duration,
     },
+    /// The program at the far end of a connection closed it.
+    #[error(
+        "{link} was closed at {:.3} s by the program at its far end: it was ended, lost its device, or gave the board to another \
+         host; look at its log, then run again",
+        at.as_secs_f64()
+    )]
+    ClosedAfar {
+        /// The link's name.
+        link: String,
+        /// When, on the link's clock.
+        at: Duration,
+    },
     /// A board that runs inside this program has failed.
     #[error("{board} stopped at {:.3} s; run again, and report it if it stops once more", at.as_secs_f64())]
     Stopped {

@@ -125,7 +125,7 @@ impl TcpLink {
             // ser2net says `Port already in use` of its own port, and `Object was already in use` of its device.
             Some(text) if !self.zero_seen && text.contains("in use") => LinkError::InUse { link, text },
             Some(text) if !self.zero_seen => LinkError::NoBoardThere { link, text },
-            _ => LinkError::Closed { link, at },
+            _ => LinkError::ClosedAfar { link, at },
         }
     }
 }

@@ -30,8 +30,9 @@ pub struct Said {
 pub(crate) const DIFFERED: &str = "differed";
 
 /// The codes of errors of the link that a board which was unplugged may leave behind, whatever leads to it.
-const ABSENT: [&str; 9] = [
+const ABSENT: [&str; 10] = [
     "board-unplugged",
+    "connection-closed",
     "link-closed",
     "link-failed",
     "link-without-board",

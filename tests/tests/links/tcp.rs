@@ -68,7 +68,7 @@ fn a_server_that_hangs_up_is_an_error() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     let server = std::thread::spawn(move || drop(listener.accept().unwrap()));
-    ends(&verify(&target, &[]), 3, "was closed at");
+    ends(&verify(&target, &[]), 3, "by the program at its far end: it was ended");
     server.join().unwrap();
 }
 

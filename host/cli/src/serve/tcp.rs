@@ -115,9 +115,11 @@ impl Port {
                     next = entrance.accept().map(|host| (host, Instant::now()));
                 }
                 if next.is_some() && self.patience.ends(connected, traffic.heard) {
+                    tracing::info!("{} is turned away: it was silent, and another host waits", name(&host));
                     return true;
                 }
                 if let Some((mut host, _)) = next.take_if(|(_, since)| since.elapsed() > GRACE) {
+                    tracing::info!("{} is turned away: another host has the board", name(&host));
                     // A host that does not wait for this answer does not need it.
                     let _ = host.write_all(IN_USE);
                 }
@@ -126,6 +128,11 @@ impl Port {
         }
         Ok(())
     }
+}
+
+/// Where `host` is, for the log.
+fn name(host: &TcpStream) -> String {
+    host.peer_addr().map_or_else(|_| "a host".to_owned(), |address| address.to_string())
 }
 
 /// The listener that lets hosts in.

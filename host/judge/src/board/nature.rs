@@ -91,7 +91,10 @@ impl BoardError {
 
 fn of_link(error: &LinkError) -> Shown {
     match error {
-        LinkError::Closed { .. } | LinkError::Failed { .. } | LinkError::Unplugged { .. } => Shown::Outage,
+        LinkError::Closed { .. }
+        | LinkError::ClosedAfar { .. }
+        | LinkError::Failed { .. }
+        | LinkError::Unplugged { .. } => Shown::Outage,
         LinkError::Trace(_)
         | LinkError::Stopped { .. }
         | LinkError::InUse { .. }

@@ -44,6 +44,7 @@ codes! {
     }
     LinkError {
         Closed [link, at] => "link-closed",
+        ClosedAfar [link, at] => "connection-closed",
         Stopped [board, at] => "board-process-stopped",
         Unplugged [link, at] => "board-unplugged",
         InUse [link, text] => "link-in-use",
