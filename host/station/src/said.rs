@@ -336,6 +336,8 @@ pub enum Saying {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
     use halfrow::board::BoardError;
     use halfrow::result::codes;
@@ -348,7 +350,7 @@ mod tests {
         let told = Said::of(&BoardError::Held { seconds: 6.6 }).at_the_station();
         assert!(told.message.ends_with("; scan the label again in 7 s"), "{told}");
         assert_eq!(told.scan_again().as_deref(), Some("Scan the label again in 7 s."));
-        let other = Said::of(&BoardError::SessionLost).at_the_station();
+        let other = Said::of(&BoardError::SessionLost { silent: Duration::ZERO }).at_the_station();
         assert_eq!((other.code.as_str(), other.scan_again()), ("session-lost", None), "the control");
     }
 

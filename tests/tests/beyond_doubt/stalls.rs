@@ -1,13 +1,17 @@
 //! Links that only stall: a sound board passes.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use halfrow::link::Candidate;
-use halfrow::result::Report;
-use halfrow::run::Plan;
+use halfrow::report::wording;
+use halfrow::result::{NotExercised, Report, SoakLength};
+use halfrow::run::{AtSpeed, Plan};
 use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
 use halfrow_protocol::Kind;
-use halfrow_tests::altered::{Toward, judge};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::proxy::{Proxy, Suffers};
 use halfrow_tests::served::Served;
 use halfrow_tests::system::{System, judge_by_plan, open, streamed};
@@ -140,4 +144,66 @@ fn a_link_that_stalls_before_a_zero_is_not_called_a_board_without_zeros() {
     let report = judge_by_plan(&System::TINY.plan(), Candidate { link, ..candidate });
     passes(&report, "before a zero");
     assert!(report.link.seconds > STALL.as_secs_f64(), "{:?}", report.link);
+}
+
+/// The report on a board of 10 kHz whose host stands still for the time `still` right after the first answer of this `kind` that comes
+/// with or after the one that its first burst has begun.
+fn standing_still_after(kind: Kind, still: Duration, at_speed: AtSpeed) -> Report {
+    let begun = Arc::new(AtomicBool::new(false));
+    let begins = Arc::clone(&begun);
+    let mut has_burst = false;
+    let alter = move |toward, packet: Passing| {
+        has_burst |= packet.is(Kind::Burst);
+        begins.fetch_or(has_burst && toward == Toward::Host && packet.is(kind), Ordering::Relaxed);
+        vec![packet]
+    };
+    let options = Options { pixel_clock: 10_000, ..Options::default() };
+    let candidate = Altered::new(&options, alter).candidate();
+    let mut stood = false;
+    let link = Through::boxed(candidate.link, move |link, out, back, wait| {
+        let taken = link.exchange(out, back, wait)?;
+        if begun.load(Ordering::Relaxed) && !std::mem::replace(&mut stood, true) {
+            let until = link.now() + still;
+            while link.now() < until {
+                link.exchange(&[], back, until - link.now())?;
+            }
+        }
+        Ok(taken)
+    });
+    judge_by_plan(&Plan { at_speed, ..System::TINY.plan() }, Candidate { link, ..candidate })
+}
+
+/// A board ends a burst and its session when it hears nothing for 10 s (AT-SPEED.md, Ends).
+#[test]
+fn a_host_that_stood_still_while_its_board_made_frames_says_so_of_itself() {
+    let after = |still| {
+        let long = AtSpeed::For(Duration::from_secs(30));
+        standing_still_after(Kind::Burst, Duration::from_secs(still), long).headline()
+    };
+    let own = "the board no longer knows this session: this computer sent it nothing for 14.0 s";
+    let said = after(14);
+    assert!(said.contains(own), "{said}");
+    let said = after(9);
+    assert!(!said.contains("no longer knows"), "{said}");
+}
+
+/// Of 90 s, 12 s pass before the second burst, while its tables are uploaded; that itself takes less than a second.
+#[test]
+fn a_soak_says_for_how_long_no_frames_were_made() {
+    let soaked = |still| {
+        let length = AtSpeed::Soak(SoakLength::Time { seconds: 90.0 });
+        let report = standing_still_after(Kind::Commit, Duration::from_secs(still), length);
+        passes(&report, "a soak");
+        let idle = |part: &NotExercised| match part {
+            NotExercised::IdleTime { seconds } => Some(*seconds),
+            _ => None,
+        };
+        let said = wording::soak(report.soak.as_ref().unwrap());
+        (report.not_exercised.iter().find_map(idle), said)
+    };
+    let (idle, said) = soaked(12);
+    assert_eq!(idle, Some(12), "{said}");
+    assert!(said.starts_with("1 min 30 s of 1 min 30 s, with frames in 1 min 18 s of it: "), "{said}");
+    let (idle, said) = soaked(0);
+    assert!(idle.is_none() && said.starts_with("1 min 30 s of 1 min 30 s: "), "{idle:?}, {said}");
 }

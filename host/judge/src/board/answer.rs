@@ -16,6 +16,8 @@ const MORE: Duration = Duration::from_millis(200);
 pub(super) struct OwnedPacket {
     pub(super) header: Header,
     pub(super) payload: Vec<u8>,
+    /// How long nothing had been sent before the request that it answers.
+    pub(super) silent: Duration,
 }
 
 impl OwnedPacket {
@@ -62,7 +64,9 @@ pub(super) fn take_reply<T>(
     take: impl FnOnce(Reply<'_>) -> Option<T>,
 ) -> Result<T, BoardError> {
     match Reply::read(&answer.packet()).map_err(|source| BoardError::Malformed { kind, source })? {
-        Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
+        Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => {
+            Err(BoardError::SessionLost { silent: answer.silent })
+        }
         Reply::Refusal(refusal) => Err(BoardError::Refused { kind, refusal }),
         reply => take(reply).ok_or(BoardError::Unexpected { kind }),
     }

@@ -2,6 +2,7 @@
 //! try a window.
 
 use std::iter;
+use std::time::Duration;
 
 use halfrow_protocol::message::{
     Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace, Status,
@@ -278,7 +279,7 @@ impl Board {
                 })?;
                 match came {
                     Some(came) => return came,
-                    None if is_lost => return Err(BoardError::SessionLost),
+                    None if is_lost => return Err(BoardError::SessionLost { silent: Duration::ZERO }),
                     None => {}
                 }
             }

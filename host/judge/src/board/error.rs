@@ -151,11 +151,13 @@ pub enum BoardError {
         /// What is left of the ten seconds.
         seconds: f64,
     },
-    /// The board no longer knows the host's session.
-    #[error(
-        "the board no longer knows this session: it was reset or lost power, or another host took it over; run again"
-    )]
-    SessionLost,
+    /// The board no longer knows the host's session: it was reset or lost power, another host took it over, or this computer sent
+    /// nothing for 10 s. Then another host may take the board, and a burst ends with its session.
+    #[error("the board no longer knows this session: {}", lost_by(*.silent))]
+    SessionLost {
+        /// How long nothing had been sent before the request that was refused; zero if that is not known.
+        silent: Duration,
+    },
     /// The board refused a request. If it refuses a kind, a payload, taps or, most often, a range, the board does not do
     /// what it says that it can. If a table reads back with another CRC, its memory may be faulty. Any other refusal may come
     /// from another host or from an old packet.
@@ -297,6 +299,23 @@ fn advice(refusal: &Refusal) -> &'static str {
         RefusalCode::Busy => "; stop whatever else feeds the board's core, then run again",
         _ => "; run again, and if it refuses each time, load a bitstream that follows protocol/WIRE.md",
     }
+}
+
+/// After this silence of its host a board may end a session (protocol/WIRE.md, Sessions).
+const FORGOTTEN: Duration = Duration::from_secs(10);
+
+/// Why a board no longer knows a session whose host sent nothing for the time `silent`, and what to do about it.
+fn lost_by(silent: Duration) -> String {
+    if silent < FORGOTTEN {
+        return "it was reset or lost power, another host took it over, or this computer was suspended or overloaded while the board \
+                made frames; run again"
+            .to_owned();
+    }
+    format!(
+        "this computer sent it nothing for {} (stopped by Ctrl-Z, suspended or overloaded); keep this computer and program running, \
+         and run again",
+        span(silent.as_secs_f64())
+    )
 }
 
 /// After this silence a run is not merely slow.

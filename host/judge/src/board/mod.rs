@@ -310,7 +310,7 @@ fn close(conversation: &mut Conversation) {
     let reset = Reset { level: ResetLevel::Session, next_row: conversation.credit() };
     match conversation.disregarding_stop(|conversation| reset_to(conversation, reset, Step::Close)) {
         // The board answers a repeated RESET so when the reply to the first was lost: the session is closed.
-        Ok(_) | Err(BoardError::SessionLost) => {}
+        Ok(_) | Err(BoardError::SessionLost { .. }) => {}
         Err(error) => tracing::debug!("the session was not closed: {error}"),
     }
 }

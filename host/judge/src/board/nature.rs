@@ -58,7 +58,7 @@ impl BoardError {
                 Nature::of_device(Some(Shown::Unreachable), Busy)
             }
             Self::TurnedAway(_) => Nature::of(Some(Shown::Unreachable), Station),
-            Self::NoAnswer { .. } | Self::SessionLost => Nature::of(Some(Shown::Outage), Station),
+            Self::NoAnswer { .. } | Self::SessionLost { .. } => Nature::of(Some(Shown::Outage), Station),
             Self::Held { .. } | Self::NotGivenUp { .. } => Nature::of_device(None, Busy),
             Self::NotABoard | Self::Version { .. } | Self::Impossible { .. } | Self::Unclosed => {
                 Nature::of_device(None, Refused)

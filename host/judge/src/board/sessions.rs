@@ -143,7 +143,7 @@ impl Board {
     pub(crate) fn close_session(&mut self) -> Result<(), BoardError> {
         match self.reset(ResetLevel::Session, Step::Request) {
             // The board's answer to a repeated RESET when the reply to the first was lost.
-            Err(BoardError::SessionLost) => Ok(()),
+            Err(BoardError::SessionLost { .. }) => Ok(()),
             closed => closed,
         }
     }
@@ -166,7 +166,7 @@ impl Board {
             answer
         });
         match answer.and_then(|answer| said(kind, &answer)) {
-            Err(BoardError::SessionLost) => {
+            Err(BoardError::SessionLost { .. }) => {
                 Ok(Response::Refused(Refusal { code: RefusalCode::Session, kind: kind.code(), detail: 0 }))
             }
             said => said,

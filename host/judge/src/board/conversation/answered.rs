@@ -48,6 +48,7 @@ impl Conversation {
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<OwnedPacket, BoardError> {
         let (kind, sequence, begun) = (asking.kind(), self.next_sequence(), self.now());
+        let silent = begun.saturating_sub(self.sent_at);
         let attempts = step.deadline().attempts;
         self.session.asked.note_request(asking, sequence, begun);
         let (mut retry, mut bytes) = (Retry::new(attempts), 0);
@@ -65,7 +66,7 @@ impl Conversation {
                     let late = self.tally.late;
                     if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
                         self.note_answer(&answer, kind, retry.attempt(), begun);
-                        return Ok(answer);
+                        return Ok(OwnedPacket { silent, ..answer });
                     }
                     if self.tally.late == late {
                         continue;
@@ -120,7 +121,11 @@ impl Conversation {
             let is_row = header.kind == Kind::RowOut.code();
             rows += u64::from(is_row);
             if !is_row && header.sequence == sequence && accept(packet) {
-                answer.get_or_insert_with(|| OwnedPacket { header, payload: packet.payload.to_vec() });
+                answer.get_or_insert_with(|| OwnedPacket {
+                    header,
+                    payload: packet.payload.to_vec(),
+                    silent: Duration::ZERO,
+                });
             }
         })?;
         let unwanted = rows.min(self.session.unwanted.into());

@@ -99,6 +99,8 @@ pub(super) struct Conversation {
     lateness: Lateness,
     /// When the last packet came in.
     pub(super) heard_at: Duration,
+    /// When bytes last went out.
+    sent_at: Duration,
     stop: Stop,
 }
 
@@ -125,6 +127,7 @@ impl Conversation {
             counts: options.counts,
             lateness: Lateness::default(),
             heard_at: Duration::ZERO,
+            sent_at: Duration::ZERO,
             stop: options.stop.clone(),
         }
     }
@@ -282,6 +285,9 @@ impl Conversation {
         // A link of the caller's own may count what it adds.
         let taken = moved?.min(self.outgoing.len());
         self.outgoing.drain(..taken);
+        if taken > 0 {
+            self.sent_at = begun;
+        }
         self.tally.bytes_out += taken as u64;
         self.tally.bytes_in += self.incoming.len() as u64;
         Ok(())

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 use halfrow_protocol::message::{RefusalCode, Reply, RowOut};
 use halfrow_protocol::{Kind, Packet, samples};
@@ -66,7 +67,9 @@ impl<'a> Arrivals<'a> {
         };
         match reply {
             Reply::RowOut(row) => self.take_row(&row),
-            Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
+            Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => {
+                Err(BoardError::SessionLost { silent: Duration::ZERO })
+            }
             Reply::Refusal(refusal) if refusal.kind == Kind::RowIn.code() => {
                 if !self.numbers.has(packet.header.sequence) {
                     self.old_refusals += 1;

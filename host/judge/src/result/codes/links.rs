@@ -30,7 +30,7 @@ codes! {
         Version [board, ours] => "wire-version-unknown",
         Held [seconds] => "board-held",
         NotGivenUp [seconds] => "take-over-refused",
-        SessionLost => "session-lost",
+        SessionLost [silent] => "session-lost",
         Refused [kind, refusal] => "request-refused",
         Malformed [kind] => "answer-malformed",
         Unexpected [kind] => "answer-of-other-kind",

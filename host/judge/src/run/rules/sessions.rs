@@ -74,7 +74,7 @@ impl Rules<'_, '_> {
     fn has_lost_power(&mut self) -> bool {
         match self.run.board.status() {
             Ok(status) => status.generation == 0,
-            Err(error) => matches!(error, BoardError::SessionLost),
+            Err(error) => matches!(error, BoardError::SessionLost { .. }),
         }
     }
 
@@ -292,7 +292,7 @@ impl Rules<'_, '_> {
         for _ in 0..TIMES {
             self.run.board.forget().during(CheckName::Rules)?;
             match self.run.board.status() {
-                Err(BoardError::SessionLost) => self.next_session()?,
+                Err(BoardError::SessionLost { .. }) => self.next_session()?,
                 status => return status.map(drop).during(CheckName::Rules),
             }
         }

@@ -203,6 +203,8 @@ pub(crate) fn broken_off(mut end: End, found: Finding, doubt: Doubt) -> End {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use halfrow_protocol::Kind;
 
     use super::*;
@@ -237,7 +239,7 @@ mod tests {
     fn only_another_fail_replaces_a_fail() {
         let failed = || End::failed(CheckName::Link, Finding::EchoWrong {});
         let answer = || End::board(CheckName::Link, &BoardError::Unexpected { kind: Kind::Echo });
-        let gone = || End::board(CheckName::Link, &BoardError::SessionLost);
+        let gone = || End::board(CheckName::Link, &BoardError::SessionLost { silent: Duration::ZERO });
         let again = |ended, found: End| Again::of(ended, &found);
         assert!(matches!(again(Ok(()), failed()), Again::Right));
         assert!(matches!(again(Err(failed()), failed()), Again::Wrong(_)));
