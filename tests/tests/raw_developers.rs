@@ -49,11 +49,13 @@ fn dcraw_and_libraw_find_every_sample_as_it_is() {
     for (phase, depth) in every_kind() {
         let (folder, frame) = corrected(phase, depth);
         let how = ReadOptions { depth, phase, ..ReadOptions::default() };
-        let by_dcraw = printed(&folder, "dcraw", "dcraw", &["-D", "-4", "-T", "-c", "frame.dng"]);
-        assert!(decode(&by_dcraw, &how).unwrap() == frame, "{phase} {depth:?}, dcraw");
         printed(&folder, "libraw-bin", "unprocessed_raw", &["-q", "-T", "frame.dng"]);
         let by_libraw = folder.read("frame.dng.tiff");
         assert!(decode(&by_libraw, &how).unwrap() == frame, "{phase} {depth:?}, LibRaw");
+        // Of a camera that hangs on its side: without `-t 0` dcraw turns raw samples, too.
+        tag(&folder, "frame.dng", &["Orientation=6"]);
+        let by_dcraw = printed(&folder, "dcraw", "dcraw", &["-D", "-4", "-T", "-t", "0", "-c", "frame.dng"]);
+        assert!(decode(&by_dcraw, &how).unwrap() == frame, "{phase} {depth:?}, dcraw");
     }
 }
 
@@ -93,6 +95,91 @@ fn exiftool_finds_nothing_missing_and_the_depth_as_white() {
         let white = (1 << depth.bits()) - 1;
         assert_eq!(told, format!("Validate : OK\nWhiteLevel : {white}\nBlackLevel : 0\n"));
     }
+}
+
+/// What ExifTool finds in `file` of these tags, without rounding.
+fn told_by_exiftool(folder: &Folder, file: &str, tags: &[&str]) -> String {
+    let call = [&["-s", "-n", "-validate", "-warning"][..], tags, &[file]].concat();
+    text(folder, "libimage-exiftool-perl", "exiftool", &call)
+}
+
+/// Lets ExifTool write these tags into the first directory of `file`.
+fn tag(folder: &Folder, file: &str, tags: &[&str]) {
+    let tags: Vec<_> = tags.iter().map(|tag| format!("-IFD0:{tag}")).collect();
+    let how = ["-q", "-n", "-overwrite_original"];
+    let call: Vec<_> = how.into_iter().chain(tags.iter().map(String::as_str)).chain([file]).collect();
+    printed(folder, "libimage-exiftool-perl", "exiftool", &call);
+}
+
+/// Everything about levels and colours that ExifTool wrote into a DNG is in the corrected one, by the model and by a board.
+#[test]
+fn what_a_dng_says_of_levels_and_colours_is_in_the_corrected_one() {
+    let tags = [
+        "WhiteLevel=3967",
+        "BlackLevelRepeatDim=2 2",
+        "BlackLevel=64 70 61 66",
+        "Make=Acme",
+        "Model=Fish 1",
+        "UniqueCameraModel=Acme Fish 1",
+        "ColorMatrix1=0.5 -0.25 0.125 -0.5 1.25 0.25 -0.125 0.25 0.75",
+        "ColorMatrix2=1 0 0.25 -0.5 1.5 0.25 -0.25 0.5 0.75",
+        "CalibrationIlluminant1=17",
+        "CalibrationIlluminant2=21",
+        "AnalogBalance=1 1.5 1",
+        "AsShotNeutral=0.5 1 0.25",
+        "BaselineExposure=0.5",
+        "ForwardMatrix1=0.5 0.25 0.25 0.25 0.5 0.25 0 0.25 0.75",
+    ];
+    let names: Vec<_> =
+        tags.iter().filter_map(|tag| tag.split('=').next()).map(|tag| format!("-{tag}")).collect();
+    let names: Vec<_> = names.iter().map(String::as_str).collect();
+    let (folder, _) = corrected(Phase::Grbg, BitDepth::Twelve);
+    folder.write("camera.dng", folder.read("frame.dng"));
+    tag(&folder, "camera.dng", &tags);
+    let wanted = told_by_exiftool(&folder, "camera.dng", &names);
+    assert_eq!(wanted.lines().count(), 1 + tags.len(), "{wanted}");
+    for how in [&["--model"][..], &["--board", "mock"]] {
+        let size = ["correct", "--width", "96", "--height", "54", "--radius", "55", "--overwrite"];
+        folder
+            .halfrow(size.into_iter().chain(how.iter().copied()).chain(["camera.dng", "-o", "out.dng"]))
+            .succeeded();
+        assert_eq!(told_by_exiftool(&folder, "out.dng", &names), wanted, "{how:?}");
+    }
+}
+
+/// A level below each place of the pattern is in the outputs as it was in the samples, except where an output is limited to 0 or
+/// to full scale, with the level or without.
+#[test]
+fn a_black_level_passes_unchanged() {
+    let levels = [[64_u16, 70], [61, 66]];
+    let (folder, _) = corrected(Phase::Grbg, BitDepth::Twelve);
+    let how = ReadOptions::default();
+    let read = |name: &str| decode(&folder.read(name), &how).unwrap();
+    let level = |place: usize| levels[place / 96 % 2][place % 2];
+    // Noise in the lower 3900 of 4096.
+    let plain: Vec<_> = read("frame.pgm").samples().iter().map(|sample| sample.min(&3900)).copied().collect();
+    let raised = plain.iter().enumerate().map(|(place, sample)| sample + level(place));
+    for (name, samples) in [("plain", plain.clone()), ("raised", raised.collect())] {
+        let bytes = samples.into_iter().flat_map(u16::to_be_bytes);
+        let file: Vec<u8> = b"P5\n96 54\n4095\n".iter().copied().chain(bytes).collect();
+        folder.write(&format!("{name}.pgm"), file);
+    }
+    let correct = |radius: &str, input: &str, output: &str| {
+        let size = ["correct", "--width", "96", "--height", "54", "--model", "--radius", radius];
+        folder.halfrow(size.into_iter().chain([input, "-o", output])).succeeded();
+    };
+    // Of such a lens every sample stays.
+    correct("1e8", "raised.pgm", "raised.dng");
+    tag(&folder, "raised.dng", &["BlackLevelRepeatDim=2 2", "BlackLevel=64 70 61 66"]);
+    correct("55", "plain.pgm", "plain-out.pgm");
+    correct("55", "raised.dng", "raised-out.pgm");
+    let (before, after) = (read("plain-out.pgm"), read("raised-out.pgm"));
+    let unlimited = |sample: u16| sample > 0 && sample < 4095;
+    let pairs = before.samples().iter().zip(after.samples()).enumerate();
+    let judged: Vec<_> =
+        pairs.filter(|(_, (before, after))| unlimited(**before) && unlimited(**after)).collect();
+    assert!(judged.len() > 4000, "{}", judged.len());
+    assert!(judged.iter().all(|(place, (before, after))| **before + level(*place) == **after));
 }
 
 /// dcraw with its own bilinear interpolation, the file's colours and white, sRGB's curve, and no brightening. Both round to 8
@@ -146,7 +233,11 @@ fn it_can_be_corrected_again() {
     assert!(folder.read("twice.pgm") == folder.read("expected.pgm"));
     for (phase, bits, remedy) in [
         ("grbg", "10", "its colours lie as gbrg, not as grbg; name the phase (--phase) gbrg"),
-        ("gbrg", "12", "its samples have 10 bits, not 12"),
+        (
+            "gbrg",
+            "12",
+            "its white is 1023, which is not that of samples of 12 bits; name the bits (--bits) 10",
+        ),
     ] {
         let refused = again("frame.dng", "none.pgm", phase, bits);
         assert_eq!(refused.code, Some(2));

@@ -112,12 +112,16 @@ pub enum DecodeError {
     },
     /// The file has more bytes after its last sample.
     #[error(
-        "it has {extra} more bytes after its last sample; check width, height and layout, or split a file of \
-         several frames"
+        "it has {extra} more bytes after its last sample{}; {}check width, height and layout, or split a file of \
+         several frames",
+        padding.map(|bytes| format!(", {bytes} for each row")).unwrap_or_default(),
+        if padding.is_some() { "if they pad its rows, cut them off; else " } else { "" }
     )]
     Trailing {
         /// Bytes too many.
         extra: usize,
+        /// Bytes too many for each row, if each may have as many and they are fewer than its samples'.
+        padding: Option<usize>,
     },
     /// The PGM's header lacks a number.
     #[error("the PGM header has no {wanted} at byte {offset}; it must read `P5 WIDTH HEIGHT MAXVAL`")]
@@ -203,14 +207,15 @@ pub enum DecodeError {
     },
     /// The file says that its samples have another depth than was asked for.
     #[error(
-        "it says that its samples have {found} bits, not {}; {}scale it to {} bits",
-        asked.bits(),
-        if BitDepth::from_bits(*found).is_some() { "name the bits, or " } else { "" },
-        asked.bits()
+        "it says that its white is {white}, which is not that of samples of {asked} bits; {}scale it to {asked} bits",
+        named.map(|depth| format!("name the bits {}, or ", depth.bits())).unwrap_or_default(),
+        asked = asked.bits()
     )]
     OtherDepth {
-        /// The bits of the file's white.
-        found: u32,
+        /// The file's white.
+        white: u32,
+        /// The depth that has such a white.
+        named: Option<BitDepth>,
         /// The depth asked for.
         asked: BitDepth,
     },

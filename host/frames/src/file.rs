@@ -10,8 +10,8 @@ use super::format::Format;
 use super::preview::{RgbImage, encode_png_rgb};
 use super::size::MAX_FILE_BYTES;
 use super::{
-    DecodeError, Decoded, FrameShape, Orientation, PictureSize, ReadError, ReadOptions, WriteError,
-    photograph, png,
+    Camera, DecodeError, Decoded, FrameShape, PictureSize, ReadError, ReadOptions, WriteError, photograph,
+    png,
 };
 use halfrow_files::written_aside::{BUFFER, write_aside};
 
@@ -122,21 +122,16 @@ pub fn read_shown(path: &Path) -> Result<RgbImage, ReadError> {
 /// # Errors
 /// [`WriteError`] when the extension is none of these, the file exists and `overwrite` is false, or it cannot be written.
 pub fn write(path: &Path, frame: &Frame, overwrite: bool) -> Result<(), WriteError> {
-    write_oriented(path, frame, Orientation::default(), overwrite)
+    write_taken(path, frame, &Camera::default(), overwrite)
 }
 
-/// Like [`write()`], for a frame that is shown turned by `orientation`, which a DNG and a TIFF record.
+/// Like [`write()`], for a frame that `camera` took: a DNG records all of it, a TIFF the orientation.
 ///
 /// # Errors
 /// Those of [`write()`].
-pub fn write_oriented(
-    path: &Path,
-    frame: &Frame,
-    orientation: Orientation,
-    overwrite: bool,
-) -> Result<(), WriteError> {
+pub fn write_taken(path: &Path, frame: &Frame, camera: &Camera, overwrite: bool) -> Result<(), WriteError> {
     let bytes = Format::of(path)?
-        .encode(frame, orientation)
+        .encode(frame, camera)
         .map_err(|source| WriteError::Encode { path: path.to_owned(), source })?;
     Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
 }
@@ -162,7 +157,7 @@ pub fn write_rows<E: From<WriteError>>(
     samples.chunks_exact_mut(shape.width).try_for_each(next_row)?;
     let frame = Frame::new(shape.width, shape.depth, shape.phase, samples);
     let frame = frame.map_err(|refused| no_frame(path, refused))?;
-    Ok(write_oriented(path, &frame, shape.orientation, overwrite)?)
+    Ok(write_taken(path, &frame, &shape.camera, overwrite)?)
 }
 
 fn no_frame(path: &Path, source: FrameError) -> WriteError {

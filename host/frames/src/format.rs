@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use halfrow_model::{BitDepth, Frame};
 
-use super::{EncodeError, FrameShape, Orientation, WriteError, dng, pgm, png, raw, tiff};
+use super::{Camera, EncodeError, FrameShape, WriteError, dng, pgm, png, raw, tiff};
 
 /// A format in which frames are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,13 +76,13 @@ impl Format {
         }
     }
 
-    pub(super) fn encode(self, frame: &Frame, orientation: Orientation) -> Result<Vec<u8>, EncodeError> {
+    pub(super) fn encode(self, frame: &Frame, camera: &Camera) -> Result<Vec<u8>, EncodeError> {
         let mut bytes = Vec::new();
         match self {
             Self::Pgm => pgm::encode(frame, &mut bytes)?,
             Self::Png => png::encode(frame, &mut bytes)?,
-            Self::Tiff => tiff::encode(frame, orientation, &mut Cursor::new(&mut bytes))?,
-            Self::Dng => dng::encode(frame, orientation, &mut Cursor::new(&mut bytes))?,
+            Self::Tiff => tiff::encode(frame, camera.orientation, &mut Cursor::new(&mut bytes))?,
+            Self::Dng => dng::encode(frame, camera, &mut Cursor::new(&mut bytes))?,
             Self::Raw => raw::encode(frame, &mut bytes)?,
         }
         Ok(bytes)

@@ -6,6 +6,7 @@
 #![warn(missing_debug_implementations)]
 
 mod builtin;
+mod camera;
 pub mod dng;
 mod error;
 mod file;
@@ -36,10 +37,9 @@ mod turned;
 use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
+pub use camera::Camera;
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
-pub use file::{
-    FrameFile, check_png, read, read_rgb, read_shown, write, write_oriented, write_rgb, write_rows,
-};
+pub use file::{FrameFile, check_png, read, read_rgb, read_shown, write, write_rgb, write_rows, write_taken};
 pub use fitting::{Fitting, PictureSize};
 pub use format::{Format, UnknownFormat};
 pub use heat_map::{HeatMap, MAGMA};
@@ -71,8 +71,8 @@ pub struct Decoded {
     pub frame: Frame,
     /// How the picture that it was made from was brought to its size, if it was.
     pub fitting: Option<Fitting>,
-    /// How a viewer must turn raw samples. A picture in colour is already turned.
-    pub orientation: Orientation,
+    /// How it was taken. A picture in colour is already turned.
+    pub camera: Camera,
     /// Whether its colours are coded for the screen, as those of a JPEG, WebP or BMP are known to be.
     pub is_coded: bool,
 }
@@ -80,7 +80,7 @@ pub struct Decoded {
 /// Of raw samples, or of a picture that already had its size.
 impl From<Frame> for Decoded {
     fn from(frame: Frame) -> Self {
-        Self { frame, fitting: None, orientation: Orientation::default(), is_coded: false }
+        Self { frame, fitting: None, camera: Camera::default(), is_coded: false }
     }
 }
 
@@ -99,7 +99,7 @@ fn decode_fitted(bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError
     } else if bytes.starts_with(png::MAGIC) {
         png::picture(bytes, how.size)?.into_frame(how)
     } else if tiff::MAGICS.iter().any(|magic| bytes.starts_with(magic)) {
-        tiff::picture(bytes, how)?.into_frame(how)
+        tiff::decode_fitted(bytes, how)
     } else if bytes.starts_with(pgm::MAGIC) {
         pgm::decode(bytes, how).map(Decoded::from)
     } else if let Some(format) = photograph::PhotographFormat::of(bytes) {

@@ -58,7 +58,7 @@ impl Picture {
             narrow::note(full, how.depth);
             let samples = if channels == 1 { samples } else { samples.into_iter().step_by(2).collect() };
             let frame = Frame::new(width, how.depth, how.phase, samples)?;
-            return Ok(Decoded { orientation, ..frame.into() });
+            return Ok(Decoded { camera: orientation.into(), ..frame.into() });
         }
         let height = samples.len() / (channels * width.max(1));
         let fitting = how.size.fitting((width, height))?;

@@ -39,7 +39,15 @@ impl Raster {
     /// # Errors
     /// [`DecodeError`] when it does not.
     pub(super) fn check_length(&self, length: usize) -> Result<(), DecodeError> {
-        size::exact(length.saturating_sub(self.start), self.line_bytes() * self.height)
+        let samples = self.line_bytes() * self.height;
+        match size::exact(length.saturating_sub(self.start), samples) {
+            Err(DecodeError::Trailing { extra, .. })
+                if matches!(self.lines, Lines::Raw(_)) && extra < samples && extra % self.height == 0 =>
+            {
+                Err(DecodeError::Trailing { extra, padding: Some(extra / self.height) })
+            }
+            checked => checked,
+        }
     }
 
     /// The largest sample that the file can hold.

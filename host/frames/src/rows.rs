@@ -8,7 +8,7 @@ use std::sync::Arc;
 use halfrow_model::{BitDepth, Frame, FrameError, Phase};
 
 use super::raster::Raster;
-use super::{Decoded, Fitting, Orientation, ReadError, ReadOptions, file, narrow, pgm, raw};
+use super::{Camera, Decoded, Fitting, ReadError, ReadOptions, file, narrow, pgm, raw};
 
 /// Bytes in which the header of a PGM is looked for. A file with a longer header is read whole.
 const HEAD: u64 = 4096;
@@ -16,7 +16,7 @@ const HEAD: u64 = 4096;
 const BUFFER: usize = 1 << 17;
 
 /// Everything about a frame but its samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameShape {
     /// Columns.
     pub width: usize,
@@ -26,8 +26,8 @@ pub struct FrameShape {
     pub depth: BitDepth,
     /// The arrangement of the colours.
     pub phase: Phase,
-    /// How a viewer must turn it, which a DNG and a TIFF record.
-    pub orientation: Orientation,
+    /// How it was taken, which a DNG and a TIFF record.
+    pub camera: Camera,
 }
 
 impl FrameShape {
@@ -47,7 +47,7 @@ pub struct RowReader {
     height: usize,
     next: usize,
     fitting: Option<Fitting>,
-    orientation: Orientation,
+    camera: Camera,
     is_coded: bool,
     source: Source,
 }
@@ -94,8 +94,8 @@ impl RowReader {
         let lines =
             Lines { path: path.to_owned(), input, raster, depth: how.depth, bytes: Vec::new(), taken: 0 };
         let source = Source::File(lines);
-        let (width, height, orientation) = (raster.width, raster.height, Orientation::default());
-        Ok(Self { width, height, next: 0, fitting: None, orientation, is_coded: false, source })
+        let (width, height, camera) = (raster.width, raster.height, Camera::default());
+        Ok(Self { width, height, next: 0, fitting: None, camera, is_coded: false, source })
     }
 
     /// Columns.
@@ -116,10 +116,10 @@ impl RowReader {
         self.fitting
     }
 
-    /// How a viewer must turn raw samples.
+    /// How the frame was taken.
     #[must_use]
-    pub fn orientation(&self) -> Orientation {
-        self.orientation
+    pub fn camera(&self) -> &Camera {
+        &self.camera
     }
 
     /// Whether its colours are coded for the screen; see [`Decoded::is_coded`].
@@ -169,8 +169,8 @@ impl Lines {
 
 impl From<Decoded> for RowReader {
     fn from(decoded: Decoded) -> Self {
-        let Decoded { frame, fitting, orientation, is_coded } = decoded;
-        Self { fitting, orientation, is_coded, ..Self::from(frame) }
+        let Decoded { frame, fitting, camera, is_coded } = decoded;
+        Self { fitting, camera, is_coded, ..Self::from(frame) }
     }
 }
 
@@ -187,7 +187,7 @@ impl From<Arc<Frame>> for RowReader {
             height: frame.height(),
             next: 0,
             fitting: None,
-            orientation: Orientation::default(),
+            camera: Camera::default(),
             is_coded: false,
             source: Source::Frame(frame),
         }

@@ -30,7 +30,7 @@ pub(super) fn exact(found: usize, expected: usize) -> Result<(), DecodeError> {
     match found.checked_sub(expected) {
         None => Err(DecodeError::Truncated { expected, found }),
         Some(0) => Ok(()),
-        Some(extra) => Err(DecodeError::Trailing { extra }),
+        Some(extra) => Err(DecodeError::Trailing { extra, padding: None }),
     }
 }
 

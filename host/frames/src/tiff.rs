@@ -11,7 +11,7 @@ use tiff::{ColorType, TiffError};
 
 use super::mosaic::Picture;
 use super::size::MAX_FILE_BYTES;
-use super::{DecodeError, Orientation, ReadOptions, tiff_directory};
+use super::{Camera, DecodeError, Decoded, Orientation, ReadOptions, tiff_directory};
 
 /// The first bytes of a TIFF, of either byte order.
 pub(super) const MAGICS: [&[u8]; 2] = [b"II*\0", b"MM\0*"];
@@ -23,26 +23,26 @@ pub(super) const MAGICS: [&[u8]; 2] = [b"II*\0", b"MM\0*"];
 /// [`DecodeError`] when the file is damaged, is of a kind that is not accepted (several pictures, palettes, planes, lossy or
 /// unusual codings), names another phase or depth than `how`, or when a sample exceeds `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
-    picture(bytes, how)?.into_frame(how).map(|decoded| decoded.frame)
+    decode_fitted(bytes, how).map(|decoded| decoded.frame)
 }
 
-/// The picture in the bytes of a TIFF or DNG.
+/// Like [`decode`], with what else the file says.
 ///
 /// # Errors
-/// Those of [`decode`] that concern the file.
-pub(super) fn picture(bytes: &[u8], how: &ReadOptions) -> Result<Picture, DecodeError> {
+/// Those of [`decode`].
+pub(super) fn decode_fitted(bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError> {
     let told = tiff_directory::check(bytes)?;
     if told.is_coloured {
         how.size.fitting(told.orientation.seen(told.size))?;
     }
-    let picture = match told.array {
-        None => read(bytes)?,
-        Some(array) => {
-            array.check(how)?;
-            read(&array.as_grey(bytes))?
-        }
+    let Some(array) = told.array else {
+        let picture = Picture { orientation: told.orientation, ..read(bytes)? };
+        return picture.turned().into_frame(how);
     };
-    Ok(Picture { orientation: told.orientation, ..picture }.turned())
+    array.check(how)?;
+    let grey = array.as_grey(bytes);
+    let camera = Camera::of_dng(&grey, told.orientation).map_err(refused)?;
+    Ok(Decoded { camera, ..read(&grey)?.into_frame(how)? })
 }
 
 /// Writes `frame` as grey samples, unchanged and uncompressed: with 8 bits if that is its depth, else with 16; to be shown turned

@@ -3,7 +3,7 @@
 //! A header of a few bytes can announce more than fits into memory, and in places the decoder computes with such numbers
 //! unchecked. So the tags that set sizes and codings are read here first, and anything but a plain picture is refused.
 
-use halfrow_model::Phase;
+use halfrow_model::{BitDepth, Phase};
 
 use super::tiff_bytes::{Bytes, SHORT};
 use super::{DecodeError, Orientation, ReadOptions, dng, size};
@@ -19,8 +19,11 @@ const PLANAR: u16 = 284;
 const TILE_WIDTH: u16 = 322;
 const TILE_HEIGHT: u16 = 323;
 
+/// PhotometricInterpretation of camera colours without a filter array.
+const LINEAR_RAW: u32 = 34892;
+
 /// How to bring raw samples into a form that is read here.
-const UNPACK: &str = "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T` does";
+const UNPACK: &str = "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T -t 0` does";
 
 /// What a TIFF or DNG says about the colour filter array of its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,20 +37,19 @@ pub(super) struct FilterArray {
 }
 
 impl FilterArray {
-    /// Refuses samples whose phase or depth differs from that of `how`.
+    /// Refuses samples of another phase than that of `how`, or whose white calls for another depth: the least that has it. Sensors
+    /// often saturate below their converter's range, and some makers say 2^B instead of 2^B − 1.
     ///
     /// # Errors
     /// [`DecodeError::OtherPhase`] or [`DecodeError::OtherDepth`].
     pub(super) fn check(&self, how: &ReadOptions) -> Result<(), DecodeError> {
-        let bits = self.white.map(|white| u32::BITS - white.leading_zeros());
-        match bits {
-            _ if self.phase != how.phase => {
-                Err(DecodeError::OtherPhase { found: self.phase, asked: how.phase })
-            }
-            Some(found) if found != how.depth.bits() => {
-                Err(DecodeError::OtherDepth { found, asked: how.depth })
-            }
-            _ => Ok(()),
+        if self.phase != how.phase {
+            return Err(DecodeError::OtherPhase { found: self.phase, asked: how.phase });
+        }
+        let Some(white) = self.white else { return Ok(()) };
+        match BitDepth::ALL.into_iter().find(|&depth| white <= u32::from(depth.max()) + 1) {
+            Some(depth) if depth == how.depth => Ok(()),
+            named => Err(DecodeError::OtherDepth { white, named, asked: how.depth }),
         }
     }
 
@@ -101,8 +103,9 @@ pub(super) fn check(bytes: &[u8]) -> Result<PictureTags, DecodeError> {
         return Err(DecodeError::Unsupported { what, remedy: "save it as grey (black is zero) or RGB" });
     }
     if !matches!(bits, 8 | 16) {
-        let what = format!("a TIFF of {bits} bits a sample");
-        return Err(DecodeError::Unsupported { what, remedy: "save it with 8 or 16 bits" });
+        let what = format!("a TIFF or DNG of {bits} bits a sample");
+        let remedy = if array.is_some() { UNPACK } else { "save it with 8 or 16 bits" };
+        return Err(DecodeError::Unsupported { what, remedy });
     }
     if one(PLANAR, 1) != 1 {
         let what = "a TIFF with a plane for each colour".to_owned();
@@ -171,7 +174,7 @@ impl Tags {
             let value = match tag {
                 dng::PATTERN | dng::VERSION => file.four_bytes(start)?,
                 // Of a table only its presence matters; the others are read only if the samples are raw.
-                dng::LINEARISATION | dng::ACTIVE_AREA | dng::LAYOUT => 0,
+                dng::LINEARISATION | dng::ACTIVE_AREA | dng::LAYOUT | dng::BLACK_REPEAT => 0,
                 tag if tag == dng::REPEAT.0 || Self::BLACKS.contains(&tag) => 0,
                 // No size depends on it, so a malformed value does no harm.
                 Orientation::TAG => file.value(start).unwrap_or(1),
@@ -201,11 +204,11 @@ impl Tags {
         self.entry(tag).map(|entry| entry.value)
     }
 
-    /// The tags of the black level: each must be 0 or missing.
+    /// The tags of the black level.
     const BLACKS: [u16; 3] = [dng::BLACK, dng::BLACK_DELTAS[0], dng::BLACK_DELTAS[1]];
 
     /// Refuses raw samples of `file`, `width` x `height`, that are not the whole picture, are not in a plain Bayer pattern, or
-    /// are not black at 0.
+    /// whose black differs otherwise than from place to place of that pattern.
     fn check_raw(&self, file: &Bytes<'_>, width: usize, height: usize) -> Result<(), DecodeError> {
         let values = |tag| self.entry(tag).map(|entry| file.values(entry.start)).transpose();
         let (repeat, sides) = dng::REPEAT;
@@ -230,12 +233,26 @@ impl Tags {
                 remedy: "crop it to that area, and give the phase there",
             });
         }
-        for (tag, name) in
-            Self::BLACKS.into_iter().zip(["BlackLevel", "BlackLevelDeltaH", "BlackLevelDeltaV"])
-        {
+        self.check_black(file)
+    }
+
+    /// Refuses a black level that is not one for all samples, or one for each place of the Bayer pattern. Such a level passes
+    /// unchanged: of each output's weights, those of its own colour add up to 1, and those of the row's other one to 0.
+    fn check_black(&self, file: &Bytes<'_>) -> Result<(), DecodeError> {
+        let values = |tag| self.entry(tag).map(|entry| file.values(entry.start)).transpose();
+        let repeats = values(dng::BLACK_REPEAT)?.unwrap_or_default();
+        let of_places = repeats.iter().all(|side| matches!(side, 1 | 2));
+        let refusals = [
+            "a DNG whose BlackLevel repeats over more than two rows or columns",
+            "a DNG whose BlackLevelDeltaH is not 0",
+            "a DNG whose BlackLevelDeltaV is not 0",
+        ];
+        for (tag, what) in Self::BLACKS.into_iter().zip(refusals).skip(usize::from(of_places)) {
             if values(tag)?.is_some_and(|black| black.iter().any(|&level| level != 0)) {
-                let what = format!("a DNG whose {name} is not 0");
-                return Err(DecodeError::Unsupported { what, remedy: "subtract it from the samples first" });
+                return Err(DecodeError::Unsupported {
+                    what: what.to_owned(),
+                    remedy: "subtract it from the samples first",
+                });
             }
         }
         Ok(())
@@ -247,6 +264,12 @@ impl Tags {
         let entry = match self.entry(PHOTOMETRIC) {
             Some(entry) if entry.value == u32::from(dng::FILTER_ARRAY) => entry,
             _ if self.value(dng::VERSION).is_none() => return Ok(None),
+            Some(entry) if entry.value == LINEAR_RAW => {
+                return refused(
+                    "a DNG that is demosaicked already (LinearRaw)",
+                    "give the raw file that it was made from",
+                );
+            }
             _ => {
                 let what = "a DNG whose first picture is not its raw one";
                 return refused(what, UNPACK);

@@ -1,6 +1,6 @@
 //! DNG files that were written byte by byte with Python's struct module, and what must be read from them.
 
-use halfrow_frames::{DecodeError, Orientation, PictureSize, ReadOptions, decode, dng};
+use halfrow_frames::{Camera, DecodeError, FrameFile, PictureSize, ReadOptions, decode, dng};
 use halfrow_model::{BitDepth, Frame, Phase};
 
 use super::pictures::hex;
@@ -22,6 +22,7 @@ const BIG: &str = "\
 const SAMPLES: [u16; 8] = [0, 1, 256, 4095, 4094, 2048, 17, 3];
 
 /// Where directory entries begin. An entry has 12 bytes; the first two are the tag.
+const BITS: usize = 26 + 2 * 12;
 const PHOTOMETRIC: usize = 26 + 4 * 12;
 const REPEAT: usize = 26 + 9 * 12;
 const PATTERN: usize = 26 + 10 * 12;
@@ -64,15 +65,25 @@ fn the_pattern_is_the_phase() {
     }
 }
 
-/// White need not be a power of two minus one. A camera of 14 bits has its white at 16383 at most.
+/// White need not be a power of two minus one, and a sensor may saturate below half of its converter's range. A camera of 14 bits
+/// has its white at 16383 at most.
 #[test]
 fn white_tells_the_depth() {
-    assert_eq!(decode(&altered(WHITE + 8, &4000_u32.to_le_bytes()), &AS_WRITTEN).unwrap().samples(), SAMPLES);
-    for (white, bits) in [(16383_u32, 14), (1023, 10), (255, 8), (4096, 13), (0, 0)] {
-        let error = decode(&altered(WHITE + 8, &white.to_le_bytes()), &AS_WRITTEN).unwrap_err();
-        assert!(matches!(error, DecodeError::OtherDepth { found, .. } if found == bits), "{error}");
-        let can_be_given = [8, 10, 12].contains(&bits);
-        assert_eq!(error.to_string().contains("name the bits"), can_be_given, "{error}");
+    let with_white = |white: u32| altered(WHITE + 8, &white.to_le_bytes());
+    for white in [1025, 2000, 2047, 4000, 4095, 4096] {
+        assert_eq!(decode(&with_white(white), &AS_WRITTEN).unwrap().samples(), SAMPLES, "{white}");
+    }
+    let depths = [
+        (16383, "white is 16383, which is not that of samples of 12 bits; scale it to 12 bits"),
+        (4097, "white is 4097, which is not that of samples of 12 bits; scale"),
+        (1024, "name the bits 10, or scale it to 12 bits"),
+        (1023, "name the bits 10, or"),
+        (256, "name the bits 8, or"),
+        (255, "name the bits 8, or"),
+    ];
+    for (white, remedy) in depths {
+        let error = decode(&with_white(white), &AS_WRITTEN).unwrap_err().to_string();
+        assert!(error.contains(remedy), "{error}");
     }
 }
 
@@ -87,7 +98,10 @@ fn what_is_no_plain_bayer_picture_is_refused_with_a_remedy() {
         (REPEAT, [50711_u16, 3, 1, 0, 2].map(u16::to_le_bytes).concat(), "CFALayout is staggered"),
         (REPEAT, [50716 | 10 << 16, 1_u32, 8].map(u32::to_le_bytes).concat(), "BlackLevelDeltaV is not 0"),
         // A first picture in grey, such as a preview; the raw samples are elsewhere.
-        (PHOTOMETRIC + 8, 1_u16.to_le_bytes().to_vec(), "as `dcraw -D -4 -T` does"),
+        (PHOTOMETRIC + 8, 1_u16.to_le_bytes().to_vec(), "as `dcraw -D -4 -T -t 0` does"),
+        // Demosaicked, or with samples of 12 bits one after the other.
+        (PHOTOMETRIC + 8, 34892_u16.to_le_bytes().to_vec(), "give the raw file"),
+        (BITS + 8, 12_u16.to_le_bytes().to_vec(), "as `dcraw -D -4 -T -t 0` does"),
         (VERSION, 50712_u16.to_le_bytes().to_vec(), "convert it to samples that are linear"),
     ];
     for (place, bytes, remedy) in remedies {
@@ -116,21 +130,28 @@ fn an_active_area_that_leaves_samples_out_is_refused() {
     assert!(matches!(decode(&broken_off, &AS_WRITTEN), Err(DecodeError::TiffDirectory { .. })));
 }
 
-/// BlackLevel in place of WhiteLevel: as a short, two shorts, a long, and a fraction, which is appended to the file.
+/// BlackLevel in place of WhiteLevel: as a short, two shorts, a long, and a fraction, which is appended to the file; once with
+/// BlackLevelRepeatDim in place of CFARepeatPatternDim.
 #[test]
-fn black_that_is_not_0_is_refused() {
-    let black = |kind: u32, count: u32, value: u32| {
+fn a_black_level_of_each_place_is_taken() {
+    let black = |kind: u32, count: u32, value: u32, repeats: Option<[u16; 2]>| {
         let entry = [50714 | kind << 16, count, value].map(u32::to_le_bytes).concat();
-        [altered(WHITE, &entry), [64_u32, 1].map(u32::to_le_bytes).concat()].concat()
+        let mut file = [altered(WHITE, &entry), [64_u32, 1].map(u32::to_le_bytes).concat()].concat();
+        if let Some([rows, columns]) = repeats {
+            file[REPEAT..][..12]
+                .copy_from_slice(&[50713, 3, 2, 0, rows, columns].map(u16::to_le_bytes).concat());
+        }
+        file
     };
     let end = u32::try_from(hex(LITTLE).len()).unwrap();
-    for file in [black(3, 1, 0), black(3, 2, 0), black(4, 1, 0)] {
+    let levels =
+        [black(3, 1, 0, None), black(3, 1, 64, None), black(4, 1, 1 << 16, None), black(5, 1, end, None)];
+    for file in levels.into_iter().chain([black(3, 2, 64 << 16, Some([1, 2])), black(3, 1, 0, Some([1, 3]))])
+    {
         assert_eq!(decode(&file, &AS_WRITTEN).unwrap().samples(), SAMPLES);
     }
-    for file in [black(3, 1, 64), black(3, 2, 64 << 16), black(4, 1, 1 << 16), black(5, 1, end)] {
-        let error = decode(&file, &AS_WRITTEN).unwrap_err().to_string();
-        assert!(error.contains("BlackLevel") && error.contains("subtract it"), "{error}");
-    }
+    let error = decode(&black(3, 1, 64, Some([1, 3])), &AS_WRITTEN).unwrap_err().to_string();
+    assert!(error.contains("BlackLevel repeats") && error.contains("subtract it"), "{error}");
 }
 
 /// PhotometricInterpretation as 32 bits, where the specification has 16.
@@ -142,6 +163,19 @@ fn a_wide_colour_code_is_taken_in_either_byte_order() {
     for file in [little, big] {
         assert_eq!(decode(&file, &AS_WRITTEN).unwrap().samples(), SAMPLES);
     }
+}
+
+/// The same numbers in either byte order, here only the white.
+#[test]
+fn the_camera_is_the_same_in_either_byte_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let [little, big] = [LITTLE, BIG].map(|file| {
+        let path = folder.path().join("in.dng");
+        std::fs::write(&path, hex(file)).unwrap();
+        FrameFile::read(&path).unwrap().decode(&AS_WRITTEN).unwrap().camera
+    });
+    assert_eq!(little, big);
+    assert_ne!(little, Camera::default());
 }
 
 #[test]
@@ -161,7 +195,7 @@ fn what_is_written_is_read_back_exactly() {
         let samples = (0..64 * 6).map(|place: u16| place.wrapping_mul(40_503) & depth.max()).collect();
         let frame = Frame::new(64, depth, phase, samples).unwrap();
         let mut file = std::io::Cursor::new(Vec::new());
-        dng::encode(&frame, Orientation::default(), &mut file).unwrap();
+        dng::encode(&frame, &Camera::default(), &mut file).unwrap();
         assert_eq!(
             decode(file.get_ref(), &ReadOptions { depth, phase, ..ReadOptions::default() }).unwrap(),
             frame

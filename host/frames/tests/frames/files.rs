@@ -5,8 +5,8 @@ use std::fs;
 
 use halfrow_files::written_aside::WriteAsideError;
 use halfrow_frames::{
-    DecodeError, EncodeError, FrameShape, Orientation, RawGeometry, RawLayout, ReadError, ReadOptions,
-    WriteError, read, read_shown, write, write_rows,
+    Camera, DecodeError, EncodeError, FrameShape, RawGeometry, RawLayout, ReadError, ReadOptions, WriteError,
+    read, read_shown, write, write_rows,
 };
 use halfrow_model::{BitDepth, Frame, FrameError, Phase};
 
@@ -91,7 +91,7 @@ fn rows_that_are_no_frame_are_written_in_no_format() {
             height,
             depth: BitDepth::Eight,
             phase: Phase::Grbg,
-            orientation: Orientation::default(),
+            camera: Camera::default(),
         };
         let mut row = 0;
         let written = write_rows(&path, &shape, true, |samples| {

@@ -2,7 +2,9 @@
 
 use std::io::Cursor;
 
-use halfrow_frames::{Orientation, RawGeometry, RawLayout, ReadOptions, decode, dng, pgm, png, raw, tiff};
+use halfrow_frames::{
+    Camera, Orientation, RawGeometry, RawLayout, ReadOptions, decode, dng, pgm, png, raw, tiff,
+};
 use halfrow_model::{BitDepth, Frame, Phase};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -17,7 +19,7 @@ fn files() -> Vec<Vec<u8>> {
     pgm::encode(&frame, &mut as_pgm).unwrap();
     png::encode(&frame, &mut as_png).unwrap();
     tiff::encode(&frame, Orientation::default(), &mut as_tiff).unwrap();
-    dng::encode(&frame, Orientation::default(), &mut as_dng).unwrap();
+    dng::encode(&frame, &Camera::default(), &mut as_dng).unwrap();
     vec![as_pgm, as_png, as_tiff.into_inner(), as_dng.into_inner()]
 }
 

@@ -115,7 +115,7 @@ fn grey_of_fewer_than_eight_bits_is_refused_with_a_remedy() {
 fn bytes_after_the_end_of_a_png_are_an_error() {
     let mut file = hex(PNG_GREY16);
     file.extend([0; 3]);
-    assert!(matches!(decode(&file, &options(BitDepth::Twelve)), Err(DecodeError::Trailing { extra: 3 })));
+    assert!(matches!(decode(&file, &options(BitDepth::Twelve)), Err(DecodeError::Trailing { extra: 3, .. })));
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn tiffs_that_are_no_plain_picture_are_refused_with_a_remedy() {
         (2, 43, "copy or export the file again"),
         (58, 12, "save it with 8 or 16 bits"),
         (70, 3, "save it uncompressed, or with LZW or deflate"),
-        (70, 7, "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T` does"),
+        (70, 7, "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T -t 0` does"),
         (82, 3, "save it as grey (black is zero) or RGB"),
         (82, 0, "save it as grey (black is zero) or RGB"),
         (106, 2, "save it as grey (black is zero) or RGB"),

@@ -151,7 +151,7 @@ fn a_picture_has_three_bytes_a_pixel() {
     assert_eq!(new(2, 3, 18).unwrap(), RgbImage { width: 2, height: 3, data: vec![7; 18] });
     assert!(matches!(new(0, 3, 0), Err(DecodeError::Empty)));
     assert!(matches!(new(2, 3, 17), Err(DecodeError::Truncated { expected: 18, found: 17 })));
-    assert!(matches!(new(2, 3, 20), Err(DecodeError::Trailing { extra: 2 })));
+    assert!(matches!(new(2, 3, 20), Err(DecodeError::Trailing { extra: 2, .. })));
     assert!(matches!(new(1 << 40, 1 << 40, 3), Err(DecodeError::TooLarge { .. })));
 }
 

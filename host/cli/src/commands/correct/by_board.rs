@@ -59,9 +59,9 @@ impl Job<'_> {
         let looks = RefCell::new(VecDeque::new());
         let inputs =
             self.inputs.iter().enumerate().map_while(|(index, input)| match self.read(input, stop) {
-                Ok(Decoded { frame, fitting, orientation, is_coded }) => {
+                Ok(Decoded { frame, fitting, camera, is_coded }) => {
                     self.note_unchecked(index, fitting);
-                    looks.borrow_mut().push_back(Look { orientation, is_coded });
+                    looks.borrow_mut().push_back(Look { camera, is_coded });
                     Some(Arc::new(frame))
                 }
                 Err(error) => {
@@ -72,7 +72,7 @@ impl Job<'_> {
         let mut indices = 0..;
         let take = |samples| {
             let look = looks.borrow_mut().pop_front().unwrap_or_default();
-            let written = self.write(places, indices.next().unwrap_or_default(), look, samples);
+            let written = self.write(places, indices.next().unwrap_or_default(), &look, samples);
             unwritten = written.err();
             if unwritten.is_none() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
@@ -101,12 +101,12 @@ impl Job<'_> {
         reader.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)).map_err(Failure::call)
     }
 
-    fn write(&self, places: &Places, index: usize, look: Look, samples: Vec<u16>) -> Result<(), Failure> {
+    fn write(&self, places: &Places, index: usize, look: &Look, samples: Vec<u16>) -> Result<(), Failure> {
         let width = self.scene.geometry.width();
         let frame = Frame::new(width, self.how.depth, self.how.phase, samples)
             .context("the board's samples are no frame; judge it with `halfrow verify`")
             .map_err(Failure::error)?;
-        frames::write_oriented(&places.frames[index], &frame, look.orientation, self.arguments.overwrite)
+        frames::write_taken(&places.frames[index], &frame, &look.camera, self.arguments.overwrite)
             .map_err(Failure::error)?;
         self.note_written(&places.frames[index]);
         self.write_preview(places, index, look, &frame).map_err(Failure::error)

@@ -25,7 +25,7 @@ impl Job<'_> {
         let input = &self.inputs[index];
         let mut rows = input.rows(&self.how, &self.scene).map_err(Failure::call)?;
         self.note_unchecked(index, rows.fitting());
-        let look = Look { orientation: rows.orientation(), is_coded: rows.is_coded() };
+        let look = Look { camera: rows.camera().clone(), is_coded: rows.is_coded() };
         let mut entering = vec![0; geometry.width()];
         let mut numbers = 0..;
         let mut kept = Vec::new();
@@ -34,7 +34,7 @@ impl Job<'_> {
             height: geometry.height(),
             depth: geometry.depth(),
             phase: self.how.phase,
-            orientation: look.orientation,
+            camera: look.camera.clone(),
         };
         let correct_next = |leaving: &mut [u16]| -> anyhow::Result<()> {
             rows.next_row(&mut entering)?;
@@ -53,7 +53,7 @@ impl Job<'_> {
         if !kept.is_empty() {
             let corrected =
                 Frame::new(shape.width, shape.depth, shape.phase, kept).map_err(Failure::error)?;
-            self.write_preview(places, index, look, &corrected).map_err(Failure::error)?;
+            self.write_preview(places, index, &look, &corrected).map_err(Failure::error)?;
         }
         Ok(())
     }

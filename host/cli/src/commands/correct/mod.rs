@@ -27,9 +27,7 @@ use crate::console;
 use crate::document::tell_result;
 use crate::exit::Exit;
 use crate::settings::Settings;
-use halfrow::frames::{
-    self, Fitting, Format, Orientation, ReadOptions, Scene, WriteError, parallel, preview,
-};
+use halfrow::frames::{self, Camera, Fitting, Format, ReadOptions, Scene, WriteError, parallel, preview};
 use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
 use places::{Places, Wanted};
@@ -120,9 +118,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 }
 
 /// How a frame is shown.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Default)]
 struct Look {
-    orientation: Orientation,
+    camera: Camera,
     /// Whether its colours are coded for the screen.
     is_coded: bool,
 }
@@ -177,13 +175,17 @@ impl Job<'_> {
         &self,
         places: &Places,
         index: usize,
-        look: Look,
+        look: &Look,
         corrected: &Frame,
     ) -> Result<(), WriteError> {
         let Some(path) = places.previews.get(index) else { return Ok(()) };
         let is_coded = self.arguments.preview_coded || look.is_coded;
         let develop = if is_coded { preview::demosaic_coded } else { preview::demosaic };
-        frames::write_rgb(path, &develop(corrected).turned(look.orientation), self.arguments.overwrite)?;
+        frames::write_rgb(
+            path,
+            &develop(corrected).turned(look.camera.orientation),
+            self.arguments.overwrite,
+        )?;
         self.note_written(path);
         Ok(())
     }

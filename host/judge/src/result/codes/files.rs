@@ -45,7 +45,7 @@ codes! {
         TiffDirectory [offset] => "tiff-directory-wrong",
         Tiff => "tiff-damaged",
         OtherPhase [found, asked] => "frame-of-other-phase",
-        OtherDepth [found, asked] => "frame-of-other-depth",
+        OtherDepth [white, asked] => "frame-of-other-depth",
         TooDeep [row, column, value] => "sample-too-deep",
         = Packing,
         = Frame,
