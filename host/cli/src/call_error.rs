@@ -68,7 +68,11 @@ pub(crate) enum CallError {
     )]
     FieldOfViewVoid { what: &'static str },
     /// The lens file does not give the size of its pictures.
-    #[error("the lens file {} does not say how large its pictures are; give --width and --height", path.display())]
+    #[error(
+        "the lens file {} does not say how large its pictures are; add image_width and image_height to it, or give --width and \
+         --height if the frames have the size of its pictures",
+        path.display()
+    )]
     LensSizeMissing { path: PathBuf },
     /// The file's name says another format than the option.
     #[error("{} is no {format}; leave --format out, or name a folder with -o", path.display())]

@@ -4,7 +4,7 @@ use halfrow::result::Problem;
 
 /// Phrases in the libraries' sentences, each with its flag or the command to run. No phrase is part of another. A phrase is an
 /// instruction that reads well alone, with any figure after it, or a noun that keeps its meaning wherever it stands.
-pub const FLAGS: [(&str, &str); 25] = [
+pub const FLAGS: [(&str, &str); 26] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
     ("another place for the report", "--report"),
@@ -25,6 +25,7 @@ pub const FLAGS: [(&str, &str); 25] = [
     ("crop and scale it", "--fit"),
     ("name the phase", "--phase"),
     ("name the bits", "--bits"),
+    ("name the size of the frames", "--width, --height"),
     ("the lens pitch and the optical centre", "--lens-pitch, --centre-x, --centre-y"),
     ("leave out the exact projection", "--projection"),
     ("limit the entries of a grid", "--entries"),

@@ -232,7 +232,7 @@ fn calibration(folder: &Folder, focal: &str, more: &str) {
 fn a_calibration_without_a_picture_size_needs_one() {
     let folder = Folder::new();
     calibration(&folder, "40", "");
-    let sentence = "lens.json does not say how large its pictures are; give --width and --height";
+    let sentence = "lens.json does not say how large its pictures are; add image_width and image_height";
     let lens = ["--lens", "lens.json"];
     for call in [
         &["lens"][..],
@@ -250,6 +250,18 @@ fn a_calibration_without_a_picture_size_needs_one() {
     // ROS's drivers write 0 x 0 when they do not know the size.
     calibration(&folder, "40", ",\"width\":0,\"height\":0");
     refused(&folder, &["lens", "--lens", "lens.json"], sentence);
+}
+
+/// By hand: 4000 x 3000 and 2592 x 1944 are 4 : 3. 541 is prime, so no smaller picture has the shape of 961 x 541.
+#[test]
+fn a_calibration_larger_than_frames_names_the_largest_of_its_shape() {
+    let folder = Folder::new();
+    calibration(&folder, "1600", ",\"DIM\":[4000,3000]");
+    let sentence = "pictures of 4000 x 3000, and no frame has that size; name the size of the frames (--width, --height), at \
+        most 2592 x 1944 in this shape";
+    refused(&folder, &["lens", "--lens", "lens.json"], sentence);
+    calibration(&folder, "400", ",\"DIM\":[961,541]");
+    refused(&folder, &["lens", "--lens", "lens.json"], "a width of 961 columns is not an even number");
 }
 
 /// f is 1000 pixels: 90 degrees are at 1000 · π/2, and 100 degrees at 1000 · 10π/18.

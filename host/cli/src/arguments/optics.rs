@@ -83,7 +83,7 @@ pub(crate) struct LensArguments {
     #[arg(long, value_name = "DEGREES")]
     #[arg(value_parser = any::<f64>("a number of degrees"))]
     field_of_view: Option<f64>,
-    /// Column of the optical centre [default: the lens file's, or the middle]
+    /// Column of the optical centre, which a board takes to half a column [default: the lens file's, or the middle]
     #[arg(long, value_name = "COLUMN")]
     #[arg(value_parser = any::<f64>("a column, such as 319.5"))]
     centre_x: Option<f64>,

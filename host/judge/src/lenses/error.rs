@@ -3,7 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
-use halfrow_model::{CameraError, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, Short, TableError};
+use halfrow_model::{
+    CameraError, GeometryError, LensError, MAX_HEIGHT, MAX_RADIUS, MAX_WIDTH, MIN_RADIUS, MIN_WIDTH, Short,
+    TableError,
+};
 
 /// A file that holds no lens that can be used. The source says where and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -144,6 +147,21 @@ pub enum LensContentError {
         /// Rows of the pictures.
         rows: usize,
     },
+    /// The calibration's pictures are no frames, but there are frames of their shape.
+    #[error(
+        "it was calibrated with pictures of {columns} x {rows}, and no frame has that size; name the size of the frames, at most \
+         {width} x {height} in this shape"
+    )]
+    NoFrame {
+        /// Columns of the pictures.
+        columns: usize,
+        /// Rows of the pictures.
+        rows: usize,
+        /// Columns of the largest frame of their shape.
+        width: usize,
+        /// Rows of that frame.
+        height: usize,
+    },
     /// Frames of another shape than the calibration's.
     #[error(transparent)]
     Shape(#[from] WrongShape),
@@ -246,6 +264,20 @@ impl From<CameraError> for LensContentError {
         match error {
             CameraError::Lens(LensError::Radius(radius)) => Self::Radius(radius),
             other => Self::Camera(other),
+        }
+    }
+}
+
+impl LensContentError {
+    /// The error for a calibration with pictures of this size, of which no frame can be, as `error` says.
+    pub(crate) fn of_pictures((columns, rows): (usize, usize), error: GeometryError) -> Self {
+        let widths = (MIN_WIDTH..=MAX_WIDTH).rev().step_by(2).filter(|&width| width <= columns);
+        let heights = widths.map(|width| (width, width * rows));
+        let of_shape = heights.filter(|(_, height)| height.is_multiple_of(columns));
+        let mut frames = of_shape.map(|(width, height)| (width, height / columns));
+        match frames.find(|(_, height)| (1..=MAX_HEIGHT).contains(height)) {
+            Some((width, height)) => Self::NoFrame { columns, rows, width, height },
+            None => error.into(),
         }
     }
 }

@@ -17,7 +17,7 @@ const FOUR_INTRINSICS: [&str; 1] = ["intrinsics"];
 const DISTORTION: [&str; 5] =
     ["distortion_coefficients", "distortion_coeffs", "dist_coeffs", "D", "distortion_parameters"];
 const MODELS: [&str; 2] = ["distortion_model", "camera_model"];
-const SIZE: [&str; 3] = ["image_size", "resolution", "img_size"];
+const SIZE: [&str; 4] = ["image_size", "resolution", "img_size", "DIM"];
 const WIDTH: [&str; 2] = ["image_width", "width"];
 const HEIGHT: [&str; 2] = ["image_height", "height"];
 

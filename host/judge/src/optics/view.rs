@@ -6,7 +6,7 @@ use halfrow_model::{BitDepth, CalibratedLens, Camera, CameraError, Equidistant, 
 
 use super::{Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy};
 use crate::call::Input;
-use crate::lenses::LensFile;
+use crate::lenses::{LensContentError, LensFile};
 
 /// The frames that a lens images. What is left out comes from the lens file, or else from the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,7 +98,10 @@ impl Optics {
         let unfit = |source| OpticsError::Unfit { path: input.path.clone(), source };
         let pictures = file.size.filter(|_| scale.is_none());
         let geometry = view.geometry(pictures.unwrap_or(PAPER_SIZE)).map_err(|error| match error {
-            OpticsError::Geometry(error) if pictures.is_some() && !view.says_size() => unfit(error.into()),
+            OpticsError::Geometry(error) if !view.says_size() => match pictures {
+                Some(size) => unfit(LensContentError::of_pictures(size, error)),
+                None => error.into(),
+            },
             other => other,
         })?;
         let (lens, centre) = match scale {

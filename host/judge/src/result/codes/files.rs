@@ -170,6 +170,7 @@ codes! {
         Sign (coefficient) => "ocam-sign-wrong",
         Inverse [distance, degrees] => "ocam-inverse-contradicts",
         RowOutside [row] => "lens-row-outside",
+        NoFrame [columns, rows, width, height] => "lens-of-no-frame-size",
         = Shape,
         = Lens,
         = Camera,
