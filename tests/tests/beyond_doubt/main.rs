@@ -28,6 +28,7 @@ mod least_blanking;
 mod left_tables;
 mod lost_rows;
 mod misplaced;
+mod order_of_looks;
 mod outages;
 mod recordings;
 mod refusals;

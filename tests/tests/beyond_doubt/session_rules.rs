@@ -50,6 +50,22 @@ fn another_host_must_not_get_a_board_that_is_held() {
     assert_eq!(broken(&hearing_take_over(true)).0, Rule::Held);
 }
 
+/// It takes any greeting with the open session's nonce for the one that opened it.
+#[test]
+fn the_nonce_of_the_open_session_lets_no_other_host_in() {
+    let mut open = None;
+    let report = hearing(move |packet| {
+        let Some((nonce, host)) = greeting(packet) else { return };
+        let (own_nonce, own) = *open.get_or_insert((nonce, host));
+        if host == own {
+            open = Some((nonce, host));
+        } else if nonce == own_nonce {
+            packet.payload[4..8].copy_from_slice(&own.to_le_bytes());
+        }
+    });
+    assert_eq!(broken(&report).0, Rule::Held, "{}", report.headline());
+}
+
 #[test]
 fn a_held_board_must_let_itself_be_taken_over() {
     let report = hearing_take_over(false);

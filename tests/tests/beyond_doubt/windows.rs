@@ -71,6 +71,34 @@ fn a_board_that_gives_less_credit_than_it_has_banks_fails() {
     }
 }
 
+/// While a row waits.
+#[test]
+fn a_board_with_a_smaller_window_in_its_counters_fails() {
+    let report = said_by(&Options::default(), |mut packet| {
+        packet.header.window = packet.header.window.saturating_sub(packet.is(Kind::Status).into());
+        Some(packet)
+    });
+    assert_eq!(credit(&report), BANKS - 1);
+}
+
+/// Of the rows before the last number all have come, so there is credit for none.
+#[test]
+fn a_board_whose_window_wraps_fails() {
+    let mut has_come = false;
+    let report = said_by(&Options::default(), move |mut packet| {
+        has_come &= !packet.is(Kind::Reset);
+        has_come |=
+            matches!(packet.reply(), Some(Reply::RowOut(row)) if row.place.row_sequence == u32::MAX - 1);
+        if packet.header.window == u32::MAX && has_come {
+            packet.header.window = BANKS - 1;
+        }
+        Some(packet)
+    });
+    let (rule, right, found) = broken(&report);
+    assert_eq!(rule, Rule::Window, "{}", report.headline());
+    assert_eq!((right, found), (&Answer::Credit { rows: 0 }, &Answer::Credit { rows: BANKS }));
+}
+
 /// The link loses the first of these acknowledgements.
 #[test]
 fn a_board_that_takes_rows_as_acknowledged_that_it_never_sent_fails_over_a_link_that_loses_packets() {

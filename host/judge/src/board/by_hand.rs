@@ -150,9 +150,10 @@ impl Board {
         self.acknowledging(row_sequence, |board| board.give_damaged(&Request::RowAck))
     }
 
-    /// Sends a request of `kind` with any payload, without waiting.
-    pub(crate) fn give_bytes(&mut self, kind: Kind, payload: &[u8]) {
+    /// Sends a request of `kind` with any payload, without waiting, and returns the number of its packet.
+    pub(crate) fn give_bytes(&mut self, kind: Kind, payload: &[u8]) -> u16 {
         self.conversation.tell(&Outgoing::Bytes(kind, payload));
+        self.conversation.sequence
     }
 
     /// Declares the requests that changed the board and reached it more than once to be `changes` in number: further ones cast no
@@ -300,12 +301,12 @@ impl Board {
         done
     }
 
-    /// Sends a ROW_ACK of all rows before `row_sequence`.
+    /// Sends a ROW_ACK of all rows before `row_sequence`, with a byte that a board must skip.
     pub(crate) fn acknowledge_alone(&mut self, row_sequence: u32) {
-        self.acknowledge_in_session(self.session(), row_sequence);
+        self.acknowledging(row_sequence, |board| board.give_bytes(Kind::RowAck, &[0]));
     }
 
-    /// The same under the number of a `session` that need not be open. This is not answered.
+    /// Sends a ROW_ACK without that byte under the number of a `session` that need not be open. This is not answered.
     pub(crate) fn acknowledge_in_session(&mut self, session: u8, row_sequence: u32) {
         self.acknowledging(row_sequence, |board| {
             board.conversation.under_session(session, |conversation| {

@@ -78,7 +78,8 @@ impl Board {
     /// # Errors
     /// Like [`Self::ask`].
     pub(crate) fn greet_as_another_host(&mut self) -> Result<Response, BoardError> {
-        let hello = self.hello_of_another_host();
+        // Of the holder alone it would be the open session's greeting once more.
+        let hello = Hello { nonce: self.options.ids.nonce, ..self.hello_of_another_host() };
         self.greet_and_close(hello)
     }
 

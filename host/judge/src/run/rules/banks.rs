@@ -9,8 +9,8 @@ use super::compared::Compared;
 use super::counts::equal;
 use super::rows::{FRAME, GENERATION, TRIES};
 use super::sessions::TIMES;
-use super::{Rules, answer, broken, counter_wrong, doubted, miscounted, other_row, unanswered};
-use crate::board::{BoardError, NumberedFrame, Response, Status};
+use super::{Rules, broken, counter_wrong, doubted, miscounted, other_row, unanswered};
+use crate::board::{BoardError, NumberedFrame, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::findings::End;
 
@@ -191,19 +191,15 @@ impl Rules<'_, '_> {
         Ok(true)
     }
 
-    /// Sends a row again that the board has and that needs no answer, with other samples.
+    /// Sends a row again that the board has and that needs no answer, with other samples and of another width. That it is known
+    /// comes before its width.
     fn unneeded(&mut self, kept: &mut FilledBanks, row: u32) -> Result<(), End> {
-        let number = self.run.board.give(&kept.place(row), &kept.black());
+        let place = RowPlace { width: kept.width + 2, ..kept.place(row) };
+        let number = self.run.board.give(&place, &vec![0; place.width.into()]);
         kept.unneeded += 1;
         // An answer to the row would come before this one.
-        self.status()?;
-        match self.run.board.refusal_of_row(number) {
-            None => Ok(()),
-            Some(refusal) => {
-                let found = answer(&Response::Refused(refusal));
-                Err(broken(Rule::Banks, Kind::RowIn, Answer::Nothing {}, found))
-            }
-        }
+        let asked = self.status().map(drop);
+        self.unless_refused(Rule::Banks, number, asked)
     }
 
     /// Damaged ROW_ACKs of all rows must free none. If something on the way makes a damaged packet whole, the board

@@ -3,10 +3,10 @@
 use std::mem;
 
 use halfrow_model::GridShape;
-use halfrow_protocol::message::{Commit, Entries, RefusalCode, Request, Span, Table};
+use halfrow_protocol::message::{Commit, Entries, RefusalCode, Request, Shape, Span, Table};
 
 use super::compared::Compared;
-use super::{FIRST_FACTOR, Rules, payload};
+use super::{FIRST_FACTOR, Rules, longer, payload};
 use crate::result::Rule;
 use crate::run::findings::End;
 use crate::tables::Generation;
@@ -95,6 +95,8 @@ impl Rules<'_, '_> {
     fn others_refused(&mut self, active: u8) -> Result<(), End> {
         let wrong = Commit { steps_crc: !0, generation: active, ..self.commit_of(0, 0, FRAME) };
         self.replied(Rule::Generation, &Request::Commit(wrong), vec![active])?;
+        let whole = Request::Commit(Commit { shape: Some(Shape { v: 0, k: 0 }), ..wrong });
+        self.bytes_replied(Rule::Skipped, whole.kind(), &longer(&whole), vec![active])?;
         for bit in 0..u8::BITS {
             let other = Request::Commit(Commit { generation: active ^ 1 << bit, ..wrong });
             self.refused(Rule::CommitCrc, &other, RefusalCode::TableCrc, Table::RowFactors as u16)?;

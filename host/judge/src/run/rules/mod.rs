@@ -12,6 +12,7 @@ mod counts;
 mod depths;
 mod greetings;
 mod grids;
+mod marked;
 mod posed;
 mod power_up;
 mod price;

@@ -14,8 +14,8 @@ const GENERATION: u8 = 0xff;
 impl Rules<'_, '_> {
     pub(super) fn power_up(&mut self) -> Result<(), End> {
         self.forget()?;
-        let commit =
-            Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: GENERATION, shape: None };
+        // With a configuration it would be out of range, which comes second.
+        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 0, shape: None };
         self.not_ready(&Request::Commit(commit))?;
         self.not_ready_for_rows()?;
         self.configure(self.small.rows())?;
@@ -68,6 +68,9 @@ impl Rules<'_, '_> {
     fn not_ready_for_rows(&mut self) -> Result<(), End> {
         let place = RowPlace { frame: 0, ..self.place(0) };
         self.row_refused(Rule::NotReady, place, RefusalCode::NotReady)?;
+        // Credit is looked at before that.
+        let beyond = RowPlace { row_sequence: self.run.board.credit(), ..place };
+        self.row_refused(Rule::Credit, beyond, RefusalCode::Credit)?;
         self.small_burst(1).map_or(Ok(()), |burst| self.not_ready(&Request::Burst(burst)))
     }
 }

@@ -12,7 +12,7 @@ struct Cost {
 }
 
 /// For every board.
-const ALWAYS: Cost = Cost { requests: 1042.0, bytes: 191_600.0 };
+const ALWAYS: Cost = Cost { requests: 1048.0, bytes: 192_300.0 };
 /// For bursts.
 const BURSTS: Cost = Cost { requests: 458.0, bytes: 123_500.0 };
 /// For the trap.

@@ -8,7 +8,7 @@ use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
 use super::counts::equal;
-use super::{FIRST_FACTOR, Rules, counter_wrong, doubted, longer, of_rows, other_row, payload};
+use super::{FIRST_FACTOR, Rules, counter_wrong, doubted, of_rows, other_row, payload};
 use crate::board::CameAgain;
 use crate::reference::correct;
 use crate::result::{CheckName, Counter, Doubt, Rule};
@@ -20,9 +20,6 @@ use crate::tables::Generation;
 pub(super) const GENERATION: u8 = 0x96;
 /// The frame whose rows are given out of order.
 pub(super) const FRAME: u16 = 0x1234;
-/// Where the flags of a row's place are, just before its generation, and the one flag that has a meaning (WIRE.md, 20).
-const FLAGS: usize = 10;
-const LAST: u8 = 1;
 /// The bytes of a row's place.
 const PLACE: usize = 12;
 /// How often a row is given until it is inside the core.
@@ -99,23 +96,6 @@ impl Rules<'_, '_> {
     /// Sends a black row at `place`, which must be refused.
     pub(super) fn row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
         self.refused(rule, &Request::RowIn(RowIn { place, packed: &black(place) }), code, 0)
-    }
-
-    /// The same with what a board must ignore: the other flags, the generation, and a byte after the samples. Ends with
-    /// `rule` if the row is not refused without all that either.
-    fn marked_row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
-        let mut bytes = longer(&Request::RowIn(RowIn { place, packed: &black(place) }));
-        bytes[FLAGS] |= !LAST;
-        bytes[FLAGS + 1] = GENERATION;
-        let marked = self.bytes_refused(Rule::Skipped, Kind::RowIn, &bytes, code, 0);
-        self.or_plain(marked, |rules| {
-            // Should the board have taken the row, it would know this one.
-            let before = rules.run.board.acknowledged();
-            rules.drop_rows()?;
-            let further = rules.run.board.acknowledged().saturating_sub(before);
-            let row_sequence = place.row_sequence.saturating_add(further);
-            rules.row_refused(rule, RowPlace { row_sequence, ..place }, code)
-        })
     }
 
     /// After a RESET only row 0 in its place must be taken, and nothing beyond the window.
@@ -263,13 +243,6 @@ impl Rules<'_, '_> {
         self.configure(self.small.rows())
     }
 
-    /// A row that arrives before the row above it.
-    fn early_row(&mut self) -> Result<(), End> {
-        self.give(1);
-        self.give(0);
-        self.right_frames(&[FRAME, FRAME + 1])
-    }
-
     /// A row must come as often as it is asked for, until it is acknowledged.
     fn again(&mut self) -> Result<(), End> {
         self.configure(2)?;
@@ -367,7 +340,8 @@ impl Rules<'_, '_> {
         self.window_goes_up(u32::MAX - self.height as u32)?;
         self.right_frames(&[FRAME])?;
         self.counted()?;
-        self.row_refused(Rule::Credit, self.place(0), RefusalCode::Credit)
+        self.row_refused(Rule::Credit, self.place(0), RefusalCode::Credit)?;
+        self.window_stays()
     }
 
     /// The board's row numbers must be the host's.
@@ -383,7 +357,7 @@ impl Rules<'_, '_> {
 }
 
 /// The samples of a black row.
-fn black(place: RowPlace) -> Vec<u8> {
+pub(super) fn black(place: RowPlace) -> Vec<u8> {
     let mut packed = Vec::new();
     pack(&vec![0; place.width.into()], &mut packed);
     packed

@@ -55,10 +55,11 @@ impl Rules<'_, '_> {
         self.must_have_credit(rows)
     }
 
-    /// The refusal of a row, the last answer, must name the same window as the answer to the RESET before it: no row has entered.
+    /// The last answer must give credit for as many rows as one to a RESET: every row that has entered is acknowledged. A window
+    /// that has wrapped counts as far ahead of them as it is.
     pub(super) fn window_stays(&mut self) -> Result<(), End> {
         let board = &self.run.board;
-        let rows = board.answered().window.saturating_sub(board.acknowledged());
+        let rows = board.answered().window.wrapping_sub(board.acknowledged());
         self.must_have_credit(rows)
     }
 
@@ -70,6 +71,7 @@ impl Rules<'_, '_> {
         let (rule, mut packets) = (Some(Rule::Banks), (0, 0));
         for _ in 0..TRIES {
             let alone = self.alone(|board| board.acknowledge_alone(beyond))?;
+            self.ends_right()?;
             equal(rule, &alone.after, &[(Counter::NextRowOut, right)])?;
             if alone.has_come() {
                 self.right += 1;
@@ -82,7 +84,7 @@ impl Rules<'_, '_> {
     }
 
     /// Sends a packet that need not be answered between two STATUS.
-    pub(super) fn alone(&mut self, send: impl FnOnce(&mut Board)) -> Result<Alone, End> {
+    pub(super) fn alone<T>(&mut self, send: impl FnOnce(&mut Board) -> T) -> Result<Alone, End> {
         let Tally { packets_out, strays, .. } = self.run.board.tally();
         let before = self.status()?;
         send(self.run.board);
