@@ -82,6 +82,7 @@ pub(crate) fn soaked() -> Report {
     let soak = SoakReport {
         asked: SoakLength::Time { seconds: 28_800.0 },
         seconds: 28_800.5,
+        idle_seconds: 0.0,
         bursts: 480,
         frames: 1_326_976,
         wrong: 2,
