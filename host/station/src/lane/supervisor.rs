@@ -177,10 +177,12 @@ impl Lane {
         attendant: &mut dyn Attendant,
         steps: &mut Vec<StepRecord>,
     ) -> End {
-        let begun = Instant::now();
-        let (mut last, mut asked) = (begun, None);
+        let mut waited = Waited::since(Instant::now());
+        let (mut last, mut asked) = (Duration::ZERO, None);
         loop {
-            match self.lines.recv_timeout(LOOK) {
+            let line = self.lines.recv_timeout(LOOK);
+            waited.look();
+            match line {
                 Ok(line) => {
                     if let Some(end) = self.take(&line, attendant, steps) {
                         return end;
@@ -189,8 +191,7 @@ impl Lane {
                         steps.truncate(patience.tries);
                         return End::Killed(babbles(&line));
                     }
-                    // The answer may have waited for the store, which does not count as silence of the lane.
-                    last = Instant::now();
+                    last = waited.time;
                 }
                 Err(RecvTimeoutError::Disconnected) => {
                     return End::Died(Saying::LaneDied { status: String::new() }.into());
@@ -201,9 +202,9 @@ impl Lane {
                 && let Some(by) = attendant.stop()
             {
                 self.tell(&Control::Stop(by));
-                asked = Some(Instant::now());
+                asked = Some(waited.time);
             }
-            if let Some(why) = impatient(patience, begun, last, asked) {
+            if let Some(why) = impatient(patience, waited.time, last, asked) {
                 return End::Killed(why);
             }
         }
@@ -321,16 +322,36 @@ fn babbles(line: &str) -> Said {
     Saying::LaneBabbles { line: line.chars().take(MOST_SHOWN).collect() }.into()
 }
 
-/// Why the lane is waited for no longer.
-fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<Instant>) -> Option<Said> {
+/// How long the lane was waited for. While the supervisor answers, or stands still with its computer, it hears nothing, and the lane
+/// is not to blame.
+struct Waited {
+    time: Duration,
+    looked: Instant,
+}
+
+impl Waited {
+    fn since(looked: Instant) -> Self {
+        Self { time: Duration::ZERO, looked }
+    }
+
+    /// Counts the time since the last look, as far as a look may have taken it.
+    fn look(&mut self) {
+        let now = Instant::now();
+        self.time += (now - self.looked).min(2 * LOOK);
+        self.looked = now;
+    }
+}
+
+/// Why the lane is waited for no longer, after `time`: it told something `last`, and was asked to end at `asked`.
+fn impatient(patience: Patience, time: Duration, last: Duration, asked: Option<Duration>) -> Option<Said> {
     let seconds = |limit: Duration| limit.as_secs_f64();
-    if last.elapsed() > patience.silence {
+    if time - last > patience.silence {
         return Some(Saying::LaneSilent { seconds: seconds(patience.silence) }.into());
     }
-    if begun.elapsed() > patience.whole {
+    if time > patience.whole {
         return Some(Saying::LaneLate { seconds: seconds(patience.whole) }.into());
     }
-    let is_deaf = asked.is_some_and(|asked| asked.elapsed() > GRACE);
+    let is_deaf = asked.is_some_and(|asked| time - asked > GRACE);
     is_deaf.then(|| Saying::LaneDeaf { seconds: seconds(GRACE) }.into())
 }
 

@@ -86,6 +86,30 @@ fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
     assert_eq!(end_of(&told, silence, slow), End::Done);
 }
 
+/// A station that stands still for this long, as when its computer sleeps, before it takes the first message.
+struct Still(Duration);
+
+impl Attendant for Still {
+    fn stop(&mut self) -> Option<StoppedBy> {
+        thread::sleep(mem::take(&mut self.0));
+        None
+    }
+
+    fn hear(&mut self, _: &Message) {}
+
+    fn rule(&mut self, _: &BoardSeen) -> Ruling {
+        Ruling::New
+    }
+}
+
+#[test]
+fn a_lane_is_not_silent_while_the_station_stands_still() {
+    let silence = Duration::from_secs(2);
+    let lane = format!("read -r job\nprintf '{}'\nsleep 1\nprintf '{TWO}'\nread -r more\n", begun());
+    let still = &mut Still(2 * silence);
+    assert_eq!(end_of_script(&lane, String::new(), silence, still), End::Done);
+}
+
 /// How it ended is the station's doing then, and says nothing of the lane.
 #[test]
 fn a_lane_that_closes_its_output_and_does_not_end_is_killed_for_that() {
