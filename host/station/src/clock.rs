@@ -1,7 +1,7 @@
 //! The wall clock.
 
 use std::fs;
-use std::ops::Range;
+use std::ops::{Add, Range};
 use std::path::Path;
 use std::sync::LazyLock;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -25,8 +25,8 @@ pub(crate) fn now_ms() -> i64 {
 }
 
 /// A moment on the clock that nobody sets and that keeps running while the computer sleeps, on which `Instant` stands still.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Moment {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Moment {
     since_start_ms: i64,
 }
 
@@ -49,6 +49,15 @@ impl Moment {
     #[cfg(test)]
     pub(crate) fn ago(time: Duration) -> Self {
         Self { since_start_ms: since_start_ms() - time.as_millis() as i64 }
+    }
+}
+
+impl Add<Duration> for Moment {
+    type Output = Self;
+
+    fn add(self, time: Duration) -> Self {
+        let time_ms = i64::try_from(time.as_millis()).unwrap_or(i64::MAX);
+        Self { since_start_ms: self.since_start_ms.saturating_add(time_ms) }
     }
 }
 

@@ -33,6 +33,7 @@ pub use figures::{Figures, Histogram};
 pub(crate) use hooks::HookError;
 pub use news::{Became, FailedHook, LaneDoing, LaneState, News};
 
+use crate::clock::Moment;
 use crate::floor::{Act, Event, ScanError};
 use crate::guard::guarded;
 use crate::labgrid;
@@ -53,8 +54,8 @@ const SILENT: Duration = Duration::from_secs(5);
 #[derive(Debug)]
 enum Input {
     Scan { number: u64, text: String, operator: String },
-    Label { number: u64, lane: Option<usize>, label: String, operator: String, until: Option<Instant> },
-    Act { number: u64, lane: usize, act: Act, of: String, operator: String, until: Option<Instant> },
+    Label { number: u64, lane: Option<usize>, label: String, operator: String, until: Option<Moment> },
+    Act { number: u64, lane: usize, act: Act, of: String, operator: String, until: Option<Moment> },
     Heard { lane: usize, heard: LaneEvent },
     Close(Option<StoppedBy>),
 }
@@ -143,7 +144,7 @@ impl Engine {
         lane: Option<usize>,
         label: &str,
         operator: &str,
-        until: Option<Instant>,
+        until: Option<Moment>,
     ) {
         let (label, operator) = (label.to_owned(), operator.to_owned());
         self.put(Input::Label { number, lane, label, operator, until });
@@ -157,7 +158,7 @@ impl Engine {
         (lane, of): (usize, &str),
         act: Act,
         operator: &str,
-        until: Option<Instant>,
+        until: Option<Moment>,
     ) {
         let (of, operator) = (of.to_owned(), operator.to_owned());
         self.put(Input::Act { number, lane, act, of, operator, until });
@@ -253,8 +254,8 @@ impl Engine {
 ///
 /// # Errors
 /// [`ScanError::Late`] after `until`.
-pub(crate) fn in_time(until: Option<Instant>) -> Result<(), ScanError> {
-    if until.is_some_and(|until| Instant::now() > until) { Err(ScanError::Late) } else { Ok(()) }
+pub(crate) fn in_time(until: Option<Moment>) -> Result<(), ScanError> {
+    if until.is_some_and(|until| Moment::now() > until) { Err(ScanError::Late) } else { Ok(()) }
 }
 
 fn work(at_work: AtWork, inbox: &Receiver<Input>) {

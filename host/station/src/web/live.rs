@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use parking_lot::Mutex;
 use tokio::sync::{broadcast, oneshot};
 
-use crate::clock;
+use crate::clock::{self, Moment};
 use crate::engine::{Became, Engine, FailedHook, LaneDoing, LaneState, News, in_time};
 use crate::floor::{ScanError, Word};
 use crate::guard::guarded;
@@ -85,7 +85,7 @@ pub(super) struct Live {
     asked: Mutex<HashMap<u64, oneshot::Sender<Became>>>,
     numbers: AtomicU64,
     /// When it began, by a monotonic clock.
-    begun: Instant,
+    begun: Moment,
     /// Tells this start of the station from others.
     start: String,
 }
@@ -112,7 +112,7 @@ impl Live {
             pages: broadcast::Sender::new(BACKLOG),
             asked: Mutex::default(),
             numbers: AtomicU64::new(0),
-            begun: Instant::now(),
+            begun: Moment::now(),
             start: clock::now_ms().to_string(),
         }
     }
@@ -144,14 +144,13 @@ impl Live {
     ///
     /// # Errors
     /// [`ScanError::Late`] when it is too late already, or the moment belongs to another start.
-    pub(super) fn until(&self, beat: &str) -> Result<Option<Instant>, ScanError> {
+    pub(super) fn until(&self, beat: &str) -> Result<Option<Moment>, ScanError> {
         if beat.is_empty() {
             return Ok(None);
         }
         let of_this = beat.split_once('-').filter(|(start, _)| *start == self.start);
-        let heard =
-            of_this.and_then(|(_, ms)| self.begun.checked_add(Duration::from_millis(ms.parse().ok()?)));
-        let until = heard.ok_or(ScanError::Late)?.min(Instant::now()) + FRESH;
+        let heard = of_this.and_then(|(_, ms)| Some(self.begun + Duration::from_millis(ms.parse().ok()?)));
+        let until = heard.ok_or(ScanError::Late)?.min(Moment::now()) + FRESH;
         in_time(Some(until)).map(|()| Some(until))
     }
 
@@ -272,7 +271,7 @@ mod tests {
     /// docs/station-operator.md: what comes more than five seconds after the news that its page heard last is refused.
     #[test]
     fn a_request_may_come_five_seconds_after_the_beat_that_its_page_heard() {
-        let begun = Instant::now().checked_sub(Duration::from_secs(100)).unwrap();
+        let begun = Moment::ago(Duration::from_secs(100));
         let live = Live { begun, ..Live::of(Vec::new()) };
         let until = |ms: u64| live.until(&format!("{}-{ms}", live.start));
         assert_eq!(until(99_000).unwrap(), Some(begun + Duration::from_secs(104)));

@@ -1,7 +1,6 @@
 //! Scans, and what is done with lanes.
 
 use std::error::Error;
-use std::time::Instant;
 
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
@@ -130,7 +129,7 @@ async fn understood(
     app: &App,
     visit: &Visit,
     scanned: &Scanned,
-    until: Option<Instant>,
+    until: Option<Moment>,
 ) -> Result<ScanReply, Trouble> {
     let refused = |error: ScanError| Ok(scanned.answer(None, Err(told(visit, &error)), scanned.armed()));
     let label = app.settings().scanner.label(&scanned.text).map(str::to_owned);
