@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use halfrow_station::plan::Plan;
-use halfrow_station::store::{Plant, Wanted};
+use halfrow_station::store::{Change, Folder, Plant, Store, Wanted};
 
 use super::{any, job, settings, shared, states};
-use crate::common::{Did, PLAN, did_in, folder, instead};
+use crate::common::{Did, PLAN, did_in, folder, instead, reason};
 use crate::plant::server::Server;
 
 /// A plan that says this of units that passed.
@@ -103,4 +103,27 @@ fn a_unit_has_not_passed_by_a_run_that_does_not_count() {
     add(&mut plant, &refusing, &any(), 1);
     worked(&server, (folder.path(), "12"), &[&refusing]);
     assert_eq!(states(&server), [["done", "1"], ["done", "1"]]);
+}
+
+/// A board whose FPGA was exchanged was repaired, and a label that was mistyped is another board's.
+#[test]
+fn a_unit_has_not_passed_by_a_run_from_before_a_person_bound_it_anew() {
+    let (server, mut plant) = shared(1);
+    let (folder, refusing) = (folder(), plan("refuse"));
+    add(&mut plant, &refusing, &Wanted::Serial("CAT00000".to_owned()), 1);
+    worked(&server, (folder.path(), "12"), &[&refusing]);
+    assert!(plant.refuses(&refusing, "CAT00000").unwrap().is_some());
+    let mut store = Store::open(&Folder::new(&folder.path().join("data"))).unwrap();
+    let change = Change {
+        serial: "CAT00000",
+        product: None,
+        device: None,
+        operator: "engel",
+        reason: &reason("repaired"),
+    };
+    store.rebind(&change).unwrap();
+    drop(store);
+    worked(&server, (folder.path(), "12"), &[&refusing]);
+    assert_eq!(server.rows("SELECT count(*) FROM audit WHERE act = 'rebind'"), [["1"]]);
+    assert!(plant.refuses(&refusing, "CAT00000").unwrap().is_none());
 }

@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use super::bench::{Did, PLAN, Station, program};
+use super::identity::{device, rebind};
 
 fn plan(again: &str) -> String {
     PLAN.replace("device = ", &format!("again = \"{again}\"\ndevice = "))
@@ -54,5 +55,28 @@ fn a_unit_that_checks_shifts_is_always_tested() {
     for _ in 0..2 {
         let did = station.run("CAT00001", "mock");
         assert_eq!(did.code, Some(0), "{did:?}");
+    }
+}
+
+/// What passed may have been another board, and a board whose FPGA was exchanged was repaired.
+#[test]
+fn a_unit_has_not_passed_by_a_run_from_before_a_person_bound_it_anew() {
+    let station = Station::with(&plan("refuse"));
+    // The label was mistyped.
+    assert_eq!(station.run("CAT00001", &device(0x22)).code, Some(0));
+    assert_eq!(station.run("CAT00002", &device(0x22)).code, Some(6));
+    let to_second = ["--serial", "CAT00002", "--device", "0000000000000022", "--reason", "mistyped"];
+    assert_eq!(rebind(&station, &to_second).code, Some(0));
+    let exchanged = ["--serial", "CAT00001", "--reason", "FPGA exchanged"];
+    for (serial, board, then) in
+        [("CAT00002", 0x22, None), ("CAT00001", 0x11, Some(exchanged)), ("CAT00001", 0x33, None)]
+    {
+        let did = station.run(serial, &device(board));
+        assert_eq!(did.code, Some(0), "{serial} as {board}: {did:?}");
+        let did = station.run(serial, &device(board));
+        assert!(did.code == Some(2) && did.complained.contains("passed already"), "{did:?}");
+        if let Some(then) = then {
+            assert_eq!(rebind(&station, &then).code, Some(0));
+        }
     }
 }

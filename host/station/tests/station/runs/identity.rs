@@ -23,7 +23,7 @@ pub(super) fn device(number: u64) -> String {
     format!("mock,serial={number}")
 }
 
-fn rebind(station: &Station, arguments: &[&str]) -> Did {
+pub(super) fn rebind(station: &Station, arguments: &[&str]) -> Did {
     rebind_in(&station.data(), arguments)
 }
 
