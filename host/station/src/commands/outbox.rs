@@ -10,7 +10,7 @@ use super::why::{Why, at_station};
 use super::{Failure, tell};
 use crate::console;
 use crate::exit::Exit;
-use crate::outbox::all;
+use crate::outbox::{Sink, all};
 use crate::settings::Settings;
 use crate::store::{DEAD_SHOWN, Dead, Folder, SharedStore, Snapshot, Store, Told, Unsent};
 
@@ -36,7 +36,7 @@ enum Action {
     /// Send all that is left while the station is not running; a running station sends by itself
     ///
     /// What was tried in vain is tried again at once; what waits for a person is not. Exit codes: 0 nothing is left to be sent, 3
-    /// something is, also what waits for a person.
+    /// something is, also what waits for a person, or the plant has lost what it had, or cannot be asked.
     Send {
         #[command(flatten)]
         disk: Disk,
@@ -164,16 +164,27 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     let mut left = Snapshot::take(store.folder())?.unsent()?;
     // What was for former sinks is not sent to them any more.
     left.retain(|unsent| sinks.iter().any(|sink| sink.name() == unsent.sink));
-    if sent == 0 && left.is_empty() {
+    let unsure = unsure(&mut sinks, &left);
+    if sent == 0 && left.is_empty() && unsure.is_empty() {
         return Ok(tell(NOTHING_LEFT));
     }
     let entries: u32 = left.iter().map(|unsent| unsent.entries).sum();
     let sent = tell(&format!("{sent} sent, {entries} not"));
-    if left.is_empty() {
+    if left.is_empty() && unsure.is_empty() {
         return Ok(sent);
     }
-    console::tell(&table_of(&left));
+    if !left.is_empty() {
+        console::tell(&table_of(&left));
+    }
+    unsure.iter().for_each(|said| console::tell_line(said));
     Ok(Exit::Error)
+}
+
+/// What sinks say to which nothing is `left` to be sent, and which may have lost what they had all the same.
+fn unsure(sinks: &mut [Box<dyn Sink>], left: &[Unsent]) -> Vec<String> {
+    let is_done = |sink: &&mut Box<dyn Sink>| left.iter().all(|unsent| unsent.sink != sink.name());
+    let asked = sinks.iter_mut().filter(is_done).map(|sink| (sink.beat(0, 0), sink));
+    asked.filter_map(|(heard, sink)| Some(format!("{}: {}", sink.name(), heard.err()?))).collect()
 }
 
 fn text(Backlog { unsent, dead }: &Backlog) -> String {

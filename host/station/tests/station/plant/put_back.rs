@@ -75,6 +75,26 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     assert_eq!(told, [["engel", "plant", "its disk broke"]]);
 }
 
+/// Whoever gives up a station's folder asks by this whether all is at the plant.
+#[test]
+fn a_plant_that_was_put_back_is_found_though_nothing_waits_for_it() {
+    let server = Server::prepared();
+    let (made, _) = send(history(), server.address());
+    let newest = query(made.as_ref(), "SELECT max(id) FROM run WHERE state = 'final'").remove(0);
+    let (folder, store) = made.parts();
+    drop(store);
+    let sends = || did(folder.path(), &server, &["outbox", "send", "--any-disk"]);
+    let sent = sends();
+    assert_eq!((sent.code, sent.said.as_str()), (Some(0), "nothing is left to be sent\n"), "{sent:?}");
+    emptied(&server);
+    let sent = sends();
+    assert!(sent.code == Some(3) && sent.said.contains(&newest), "{sent:?}");
+    assert!(sent.said.contains("`halfrow-station outbox again plant`"), "{sent:?}");
+    server.change("DROP TABLE run CASCADE");
+    let sent = sends();
+    assert!(sent.code == Some(3) && !sent.said.contains("nothing is left"), "{sent:?}");
+}
+
 /// The copy of the plant does not have the claim: its job waits to be claimed for the first time.
 #[test]
 fn a_job_that_was_judged_after_the_copy_of_its_plant_is_done_by_the_run_that_is_sent_again() {
