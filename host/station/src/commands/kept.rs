@@ -106,7 +106,8 @@ const HOW_TO_REMOVE_MORE: &str = "; with --older-than DAYS the evidence of earli
 pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
     let Prune { data, older_than, operator, json } = arguments;
     let folder = data.folder();
-    let mut store = at_station(&folder, operator, &format!("prune {}", folder.path().display()))?;
+    let older = older_than.map(|days| format!(" --older-than {days}")).unwrap_or_default();
+    let mut store = at_station(&folder, operator, &format!("prune {}{older}", folder.path().display()))?;
     let old = match older_than {
         Some(days) => {
             let before_ms = store.days_ago_ms(*days)?;
