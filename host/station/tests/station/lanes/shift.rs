@@ -175,6 +175,8 @@ fn a_drawn_fault_that_the_plan_does_not_find_keeps_the_lane_out() {
     fs::write(station.path("plan.toml"), with_mock()).unwrap();
     let did = run_mock(&station);
     assert_eq!(did.code, Some(1), "{did:?}");
+    // There is no board to be set aside.
+    assert!(did.said.contains("\nas it should be: ") && !did.said.contains("aside"), "{did:?}");
     station.change("UPDATE run SET verdict = 'PASS', cause = 'none', exit_code = 0");
     let target = station.query("SELECT target FROM run")[0].clone();
     let mut running = station.start();
