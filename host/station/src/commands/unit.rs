@@ -9,9 +9,9 @@ use super::history::verdict;
 use super::looking::{Results, either, time};
 use crate::exit::Exit;
 use crate::history::mismatch::{Bound, Mismatch};
-use crate::history::unit::{Unit, UnitRun, units};
+use crate::history::unit::{Binding, Unit, UnitRun, units};
 use crate::record::in_one_line;
-use crate::store::Snapshot;
+use crate::store::{Rebinding, Removed, Snapshot};
 
 /// Show all that is known of the units of a serial number
 #[derive(Debug, Args)]
@@ -38,17 +38,43 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if units.is_empty() {
         return Err(Failure::call(NoSuchUnit { serial: arguments.serial.clone() }));
     }
+    let (rebindings, removed) = (snapshot.rebindings()?, snapshot.pruned()?);
     either(&units, arguments.json, |units| {
-        plain_lines(units.iter().flat_map(|unit| unit_lines(unit, &snapshot)))
+        let lines = |unit| unit_lines(unit, &snapshot, &rebindings, &removed);
+        plain_lines(units.iter().flat_map(lines))
     })
 }
 
-fn unit_lines(unit: &Unit, of: &Snapshot) -> Vec<String> {
-    let Unit { product, serial, runs, .. } = unit;
+fn unit_lines(unit: &Unit, of: &Snapshot, rebindings: &[Rebinding], removed: &Removed) -> Vec<String> {
+    let Unit { product, serial, runs, bindings, .. } = unit;
     let mut lines = vec![format!("{serial}, {product}, first seen {}", time(unit.first_seen_ms))];
+    lines.extend(bindings.iter().map(binding));
+    lines.extend(rebindings.iter().filter_map(|change| rebound(unit, change)));
     lines.extend(unit.mismatches.iter().map(mismatch));
-    lines.extend(runs.iter().flat_map(|run| run_lines(run, &not_exercised(run, of))));
+    for run in runs {
+        lines.extend(run_lines(run, bindings, &not_exercised(run, of)));
+        lines.extend(kept_lines(run, removed));
+    }
     lines
+}
+
+fn binding(one: &Binding) -> String {
+    let Binding { device, from_ms, to_ms, operator, reason } = one;
+    let until = to_ms.map(|ms| format!(" until {}", time(ms))).unwrap_or_default();
+    format!("  device    {device} from {}{until}, by {operator}: {reason}", time(*from_ms))
+}
+
+/// A change of this unit's bindings, by which another unit may have got its device.
+fn rebound(unit: &Unit, change: &Rebinding) -> Option<String> {
+    let Rebinding { at_ms, operator, reason, .. } = change;
+    let whose = if change.unit_id == unit.id {
+        ""
+    } else if unit.bindings.iter().any(|one| one.to_ms == Some(*at_ms)) {
+        " another unit got its device,"
+    } else {
+        return None;
+    };
+    Some(format!("  rebound   {}{whose} by {operator}: {reason}", time(*at_ms)))
 }
 
 fn mismatch(one: &Mismatch) -> String {
@@ -74,19 +100,21 @@ fn not_exercised(run: &UnitRun, of: &Snapshot) -> Vec<String> {
     parts.iter().map(in_one_line).collect()
 }
 
-fn run_lines(run: &UnitRun, not_exercised: &[String]) -> Vec<String> {
+fn run_lines(run: &UnitRun, bindings: &[Binding], not_exercised: &[String]) -> Vec<String> {
     let line = &run.line;
     let verdict = verdict(line);
     let headline = line.headline.as_deref().unwrap_or("it is under way");
     let device = run.device.as_deref().unwrap_or("not known");
+    let mut bound = bindings.iter().filter(|one| one.device == device).peekable();
+    let is_lost = bound.peek().is_some() && bound.all(|one| one.to_ms.is_some());
+    let lost = if is_lost { ", bound to this unit no more" } else { "" };
     let mut lines = vec![
         String::new(),
         format!("{verdict} {}: {headline}", time(line.started_ms)),
         format!("  run       {}, {} {}", line.id, line.plan, line.version),
         format!("  place     {}, lane {}, by {}", line.station, line.lane, line.operator),
-        format!("  board     {}, device {device}", run.target),
+        format!("  board     {}, device {device}{lost}", run.target),
     ];
-    let evidence = run.attachments.iter().map(|one| format!("  evidence  {} {}", one.name, one.sha256));
     lines.extend(run.steps.iter().map(|step| {
         let again = if step.attempt > 1 { format!(", try {}", step.attempt) } else { String::new() };
         format!("  step      {}{again} {}: {}", step.name, step.outcome, step.detail)
@@ -96,8 +124,19 @@ fn run_lines(run: &UnitRun, not_exercised: &[String]) -> Vec<String> {
         let share = suspect.share().map(|share| format!(": explains {share:.0} %")).unwrap_or_default();
         format!("  suspect   {}{share}", suspect.named())
     }));
-    lines.extend(line.record_sha256.iter().map(|hash| format!("  record    {hash}")));
-    lines.extend(evidence);
+    lines
+}
+
+/// What was kept of a run, and what of that was removed since.
+fn kept_lines(run: &UnitRun, removed: &Removed) -> Vec<String> {
+    let line = &run.line;
+    let ended_ms = line.ended_ms.unwrap_or(i64::MAX);
+    let mut lines: Vec<_> = line.record_sha256.iter().map(|hash| format!("  record    {hash}")).collect();
+    lines.extend(run.attachments.iter().map(|one| {
+        let is_gone = removed.explains(&one.sha256, ended_ms);
+        let gone = if is_gone { ", removed since by its age" } else { "" };
+        format!("  evidence  {} {}{gone}", one.name, one.sha256)
+    }));
     lines.extend(run.waivers.iter().map(|waiver| {
         format!("  waived    {} by {}: {}", time(waiver.at_ms), waiver.operator, waiver.reason)
     }));

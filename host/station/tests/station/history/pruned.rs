@@ -8,7 +8,7 @@ use halfrow_station::check::check;
 use super::commands::did;
 use super::made::{DAY_MS, End, HOUR_MS, Made, Run, id};
 use crate::clocks::Clocks;
-use crate::common::{Did, now_ms, program, untold};
+use crate::common::{Did, now_ms, program, query, untold};
 
 /// Evidence that is 500 and 399 days old, and some of this hour.
 fn aged() -> Made {
@@ -46,6 +46,18 @@ fn a_prune_that_removes_nothing_says_how_the_evidence_of_earlier_runs_is_removed
     assert_eq!(pruned(&[]), format!("{none}{how}"));
     let one = "1 piece of evidence was removed, 3 bytes; ";
     assert_eq!(pruned(&["--older-than", "400"]), format!("{one}{none}\n"));
+    let evidence = |serial: &str| {
+        let said = did(&data, &["unit", serial]).1;
+        said.lines()
+            .filter(|line| line.starts_with("  evidence "))
+            .map(|line| line.contains(", removed since"))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(["S1", "S2"].map(evidence), [[true], [false]]);
+    // Nothing else says later how old evidence had to be.
+    let given = query(data.path(), "SELECT subject FROM audit WHERE act = 'command' ORDER BY id");
+    let plain = format!("prune {}", data.path().display());
+    assert_eq!(given, [plain.clone(), format!("{plain} --older-than 400")]);
 }
 
 /// Whatever is removed cannot be brought back. A time server may tell a wrong year, and so may whoever sets the clock.

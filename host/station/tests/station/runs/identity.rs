@@ -290,12 +290,42 @@ fn an_engineer_binds_anew_with_a_reason_that_is_kept() {
     }
     assert_eq!(called.len(), 2);
     assert_eq!(station.query("SELECT count(*) FROM binding WHERE to_ms IS NULL"), ["1"]);
+    assert_shown(&station);
     assert_well(&station);
     let database = rusqlite::Connection::open(station.store().database()).unwrap();
     database.execute("UPDATE binding SET to_ms = NULL WHERE device = '0000000000000022'", []).unwrap_err();
     database.execute("UPDATE binding SET device = '0000000000000044' WHERE to_ms IS NULL", []).unwrap();
     let checked = station.check();
     assert!(checked.code == Some(3) && checked.said.contains("fault: table binding"), "{checked:?}");
+}
+
+/// Asserts that the text of each unit says which devices it had, and who bound it anew and why.
+fn assert_shown(station: &Station) {
+    let shown = |serial: &str| {
+        let mut call = Command::new(program());
+        let did: Did = call.args(["unit", serial, "--data"]).arg(station.data()).output().unwrap().into();
+        // Without the times.
+        let is_time = |word: &&str| word.matches(':').count() == 2;
+        let line = |line: &str| line.split(' ').filter(|word| !is_time(word)).collect::<Vec<_>>().join(" ");
+        let is_of_device =
+            |line: &String| ["  device ", "  rebound "].iter().any(|key| line.starts_with(key));
+        let bound: Vec<_> = did.said.lines().map(line).filter(is_of_device).collect();
+        (bound, did.said.matches(", bound to this unit no more\n").count())
+    };
+    let expected = [
+        "  device    0000000000000033 from until by weber: first judgement",
+        "  device    0000000000000011 from until by weber: first judgement",
+        "  rebound   by engineer: FPGA exchanged",
+        "  rebound   another unit got its device, by engineer: labels",
+    ];
+    // Two runs judged a device each, and a third was refused with one of these.
+    assert_eq!(shown("CAT00017"), (expected.map(str::to_owned).to_vec(), 3));
+    let expected = [
+        "  device    0000000000000033 from by engineer: labels",
+        "  device    0000000000000022 from until by weber: first judgement",
+        "  rebound   by engineer: labels",
+    ];
+    assert_eq!(shown("CAT00071"), (expected.map(str::to_owned).to_vec(), 1));
 }
 
 /// A run that a clock set back would put before the change would be replayed in the wrong order.
