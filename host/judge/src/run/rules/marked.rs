@@ -52,13 +52,15 @@ impl Rules<'_, '_> {
     }
 
     /// What was `tried` after the row in the packet `number` was sent; ends with `rule` instead if that row was the last refused one.
+    /// A board that has lost its session refuses all rows.
     pub(super) fn unless_refused(
         &mut self,
         rule: Rule,
         number: u16,
         tried: Result<(), End>,
     ) -> Result<(), End> {
-        match self.run.board.refusal_of_row(number) {
+        let refusal = self.run.board.refusal_of_row(number);
+        match refusal.filter(|refusal| refusal.code != RefusalCode::Session) {
             None => tried,
             Some(refusal) => {
                 let found = answer(&Response::Refused(refusal));
