@@ -312,8 +312,8 @@ fn lost_by(silent: Duration) -> String {
             .to_owned();
     }
     format!(
-        "this computer sent it nothing for {} (stopped by Ctrl-Z, suspended or overloaded); keep this computer and program running, \
-         and run again",
+        "this computer sent it nothing for {}, as when it is stopped by Ctrl-Z, suspended or overloaded, after which a board may end \
+         the session and another host may take it; keep this computer and program running, and run again",
         span(silent.as_secs_f64())
     )
 }

@@ -92,7 +92,7 @@ pub enum NotExercised {
     CountersOfPoorLinks {},
     /// Whether the board that came back is the one that went away is not known, because it has no serial number.
     SameBoard {},
-    /// In a part of the soak's time no frames were made, so that the board was not tried for as long as was asked for: tables were
+    /// In a part of the soak's time no frames were made, so that the board was not tried for as long as the soak took: tables were
     /// changed, the board was away, or this computer stood still.
     IdleTime {
         /// How long, in whole seconds of the link's clock.

@@ -85,7 +85,7 @@ impl SoakReport {
         }
     }
 
-    /// Whether frames were made in less than nine tenths of the time that was asked for.
+    /// Whether frames were made in less than nine tenths of the time that a soak by time took.
     #[must_use]
     pub fn is_idle(&self) -> bool {
         matches!(self.asked, SoakLength::Time { .. }) && self.idle_seconds > self.seconds / 10.0

@@ -188,8 +188,9 @@ impl Run<'_> {
         let (watched, ended) = self.watch(&plan, &tables, ends_early, &mut told);
         let ended = ended.and_then(|()| brought_frames(&plan, &watched, time));
         let until = now + plan.time_of(watched.frames).min(time);
-        let passed = until.saturating_sub(self.board.now());
+        let from = self.board.now();
         let ended = ended.and_then(|()| self.pass_time(until));
+        let passed = self.board.now().min(until).saturating_sub(from);
         told(&watched, self.board.now());
         account.pass(passed);
         account.report.paused += u64::from(watched.paused);
