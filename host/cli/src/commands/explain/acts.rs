@@ -58,6 +58,10 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "frame-does-not-fit-tables",
         "use a frame of the tables' size and depth, or make tables for the frame's",
     ),
+    (
+        "frame-file-has-more",
+        "check width, height and layout, cut off what pads the rows, or split a file of several frames",
+    ),
     ("frame-file-not-understood", CAUSE),
     ("frame-format-not-supported", "convert the file to PGM, PNG, TIFF or DNG as the message says"),
     ("frame-impossible", "correct the size that its sentence names, or crop or pad the frame"),
@@ -193,6 +197,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "serial-rate-not-made",
         "give baud= a rate that the chip makes, such as those that the message names, and build the board for it",
     ),
+    ("session-lost", "keep this computer and program running and the board powered, then run again"),
     ("shared-board-place-moves", "write one of the names in the message, which stay the same"),
     (
         "simulation-not-built",
