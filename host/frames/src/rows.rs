@@ -26,7 +26,7 @@ pub struct FrameShape {
     pub depth: BitDepth,
     /// The arrangement of the colours.
     pub phase: Phase,
-    /// How it was taken, which a DNG and a TIFF record.
+    /// How it was taken, which a DNG records, and of which a TIFF records the orientation.
     pub camera: Camera,
 }
 

@@ -47,7 +47,8 @@ impl FilterArray {
             return Err(DecodeError::OtherPhase { found: self.phase, asked: how.phase });
         }
         let Some(white) = self.white else { return Ok(()) };
-        match BitDepth::ALL.into_iter().find(|&depth| white <= u32::from(depth.max()) + 1) {
+        let has_white = |&depth: &BitDepth| (1..=u32::from(depth.max()) + 1).contains(&white);
+        match BitDepth::ALL.into_iter().find(has_white) {
             Some(depth) if depth == how.depth => Ok(()),
             named => Err(DecodeError::OtherDepth { white, named, asked: how.depth }),
         }

@@ -74,6 +74,7 @@ fn white_tells_the_depth() {
         assert_eq!(decode(&with_white(white), &AS_WRITTEN).unwrap().samples(), SAMPLES, "{white}");
     }
     let depths = [
+        (0, "white is 0, which is not that of samples of 12 bits; scale"),
         (16383, "white is 16383, which is not that of samples of 12 bits; scale it to 12 bits"),
         (4097, "white is 4097, which is not that of samples of 12 bits; scale"),
         (1024, "name the bits 10, or scale it to 12 bits"),
