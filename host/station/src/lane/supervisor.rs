@@ -20,6 +20,8 @@ use crate::said::{Said, Saying};
 
 /// How often the supervisor checks whether anybody wants the run to end.
 const LOOK: Duration = Duration::from_millis(50);
+/// The most of a look that counts as waited: a busy computer stays below, and one that stood still is far beyond.
+const LONGEST_LOOK: Duration = Duration::from_millis(500);
 /// How long a lane may take to end once it is told to, or has nothing left to do.
 const GRACE: Duration = Duration::from_secs(10);
 
@@ -191,6 +193,8 @@ impl Lane {
                         steps.truncate(patience.tries);
                         return End::Killed(babbles(&line));
                     }
+                    // The answer may have waited for the store.
+                    waited.looked = Instant::now();
                     last = waited.time;
                 }
                 Err(RecvTimeoutError::Disconnected) => {
@@ -322,8 +326,7 @@ fn babbles(line: &str) -> Said {
     Saying::LaneBabbles { line: line.chars().take(MOST_SHOWN).collect() }.into()
 }
 
-/// How long the lane was waited for. While the supervisor answers, or stands still with its computer, it hears nothing, and the lane
-/// is not to blame.
+/// How long the lane was waited for. While the supervisor answers, or stands still with its computer, the lane is not to blame.
 struct Waited {
     time: Duration,
     looked: Instant,
@@ -337,7 +340,7 @@ impl Waited {
     /// Counts the time since the last look, as far as a look may have taken it.
     fn look(&mut self) {
         let now = Instant::now();
-        self.time += (now - self.looked).min(2 * LOOK);
+        self.time += (now - self.looked).min(LONGEST_LOOK);
         self.looked = now;
     }
 }

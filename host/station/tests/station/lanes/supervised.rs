@@ -86,12 +86,12 @@ fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
     assert_eq!(end_of(&told, silence, slow), End::Done);
 }
 
-/// A station that stands still for this long, as when its computer sleeps, before it takes the first message.
-struct Still(Duration);
+/// A station that stands still, as when its computer sleeps, for these times when it is asked whether the run is to end.
+struct Still(Vec<Duration>);
 
 impl Attendant for Still {
     fn stop(&mut self) -> Option<StoppedBy> {
-        thread::sleep(mem::take(&mut self.0));
+        thread::sleep(self.0.pop().unwrap_or_default());
         None
     }
 
@@ -106,8 +106,19 @@ impl Attendant for Still {
 fn a_lane_is_not_silent_while_the_station_stands_still() {
     let silence = Duration::from_secs(2);
     let lane = format!("read -r job\nprintf '{}'\nsleep 1\nprintf '{TWO}'\nread -r more\n", begun());
-    let still = &mut Still(2 * silence);
+    let still = &mut Still(vec![2 * silence]);
     assert_eq!(end_of_script(&lane, String::new(), silence, still), End::Done);
+}
+
+/// Its looks take longer than they should, and all of that time counts.
+#[test]
+fn a_silent_lane_is_killed_by_a_busy_station_too() {
+    let lane = format!("read -r job\nprintf '{}'\nread -r more\n", begun());
+    let mut busy = Still(vec![Duration::from_millis(300); 100]);
+    let end = end_of_script(&lane, String::new(), Duration::from_secs(2), &mut busy);
+    let End::Killed(why) = end else { panic!("{end:?}") };
+    assert_eq!(why.code, "lane-silent");
+    assert!(busy.0.len() > 85, "{} looks", 100 - busy.0.len());
 }
 
 /// How it ended is the station's doing then, and says nothing of the lane.
