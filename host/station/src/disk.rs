@@ -105,13 +105,16 @@ pub(crate) struct Room {
 }
 
 impl Room {
-    /// That of the disk with this folder, if the system says so.
-    pub(crate) fn of(folder: &Path) -> Option<Self> {
-        let disk = statvfs(folder).ok()?;
+    /// That of the disk with this folder.
+    ///
+    /// # Errors
+    /// The system's reason.
+    pub(crate) fn of(folder: &Path) -> io::Result<Self> {
+        let disk = statvfs(folder)?;
         // What is reserved for the superuser counts as neither used nor free.
         let used = disk.blocks().saturating_sub(disk.blocks_free());
         let bytes = |blocks: u64| blocks.saturating_mul(disk.fragment_size());
-        Some(Self { used: bytes(used), free: bytes(disk.blocks_available()) })
+        Ok(Self { used: bytes(used), free: bytes(disk.blocks_available()) })
     }
 
     /// All bytes that files can have.

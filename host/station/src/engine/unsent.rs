@@ -17,6 +17,6 @@ pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     if results > most {
         return Some(Saying::TooMuchUnsent { entries: results, most }.into());
     }
-    let percent = Room::of(folder.path())?.filled().filter(|_| results > 0)?;
+    let percent = Room::of(folder.path()).ok()?.filled().filter(|_| results > 0)?;
     (percent >= plant.most_filled.into()).then(|| Saying::DiskTooFull { percent }.into())
 }

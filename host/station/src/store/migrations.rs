@@ -121,7 +121,8 @@ fn refuse_full_disk(path: &Path) -> Result<(), StoreError> {
     let folder = path.parent().unwrap_or(path);
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
     // Some file systems do not report it.
-    let free = Room::of(folder).filter(|room| room.size() > 0).map(|room| room.free);
+    let room = Room::of(folder).map_err(refused)?;
+    let free = (room.size() > 0).then_some(room.free);
     // Where there is no log, it has no bytes.
     let log = fs::metadata(log_of(path)).map_or(0, |log| log.len());
     let bytes = fs::metadata(path).map_err(refused)?.len() + log;

@@ -236,9 +236,8 @@ impl App {
     ) -> Result<Result<T, StoreError>, Trouble> {
         match &self.0.source {
             Source::Station(lanes) => {
-                let store = lanes.engine.store();
-                self.blocking(visit, move || Snapshot::at_work(store.folder()).and_then(|now| look(&now)))
-                    .await
+                let folder = lanes.engine.store().folder().clone();
+                self.blocking(visit, move || Snapshot::at_work(&folder).and_then(|now| look(&now))).await
             }
             Source::Plant(plant) => {
                 let plant = plant.clone();

@@ -65,8 +65,9 @@ impl PlantLink {
     ) -> Result<T, StoreError> {
         let now = self.snapshot()?;
         let found = look(&now);
-        if let Some(plant) = now.end() {
-            self.keep(plant);
+        match now.end() {
+            Some(plant) => self.keep(plant),
+            None => self.clear(),
         }
         found
     }

@@ -78,7 +78,7 @@ pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(
     let engine = &app.lanes(visit)?.engine;
     let data = app.settings().data.clone();
     let kept: Option<StoreFigures> = turns::counted(app, visit, move |now, turns| {
-        Ok((turns.tally.counts(now)?, now.unsent()?, Room::of(&data)))
+        Ok((turns.tally.counts(now)?, now.unsent()?, Room::of(&data).ok()))
     })
     .await;
     text.of(&STATION).put(&[("station", app.station())], 1);
