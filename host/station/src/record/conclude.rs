@@ -69,9 +69,9 @@ impl Conclusion {
             verdict: Verdict::Pass,
             cause: RunCause::None,
             exit_code: RunCause::None.exit().code(),
-            headline: steps.last().map_or_else(String::new, |step| step.detail.clone()),
+            headline: telling(steps).map_or_else(String::new, |step| step.detail.clone()),
             remedy: None,
-            finding: steps.last().and_then(|step| step.finding.clone()),
+            finding: telling(steps).and_then(|step| step.finding.clone()),
         })
     }
 
@@ -151,6 +151,12 @@ impl Conclusion {
     }
 }
 
+/// The step that says what a PASS saw: the last that judged, or else the last that read the identity, whatever followed it.
+fn telling(steps: &[StepRecord]) -> Option<&StepRecord> {
+    let passed = steps.iter().filter(|step| step.outcome == StepOutcome::Passed);
+    passed.max_by_key(|step| ["identity", "verify"].iter().position(|kind| *kind == step.kind))
+}
+
 impl RunCause {
     /// The exit code of a result that it caused, unless the judge or who stopped the run gives one.
     pub(crate) const fn exit(self) -> Exit {
@@ -213,6 +219,33 @@ pub(crate) mod tests {
         assert_eq!(of(2, &[passed(1), skipped], None), (Verdict::Error, RunCause::Station));
         let died = Conclusion::error(RunCause::Crash, Saying::LaneEndless);
         assert_eq!(of(2, &[passed(1), passed(2)], Some(died)), (Verdict::Error, RunCause::Crash));
+    }
+
+    /// Only the judging says how much was judged, and that a board is no hardware.
+    #[test]
+    fn a_pass_says_what_the_last_step_saw_that_judged_or_else_read_the_identity() {
+        let said = |kinds: &[&str]| {
+            let passed = |(seq, kind): (u32, &&str)| StepRecord {
+                kind: (*kind).to_owned(),
+                finding: Some(Said::uncoded(found(seq))),
+                ..step(seq, 1, StepOutcome::Passed, RunCause::None)
+            };
+            let steps: Vec<_> = (1..).zip(kinds).map(passed).collect();
+            let Conclusion { headline, finding, .. } = Conclusion::of(kinds.len() as u32, &steps, &[], None);
+            (headline, finding.unwrap().message)
+        };
+        for (kinds, seq) in [
+            (&["identity", "verify", "link"][..], 2),
+            (&["verify", "verify", "identity"], 2),
+            (&["link", "identity", "link"], 2),
+            (&["link", "link"], 2),
+        ] {
+            assert_eq!(said(kinds), (format!("step {seq}, try 1"), found(seq)), "{kinds:?}");
+        }
+    }
+
+    fn found(seq: u32) -> String {
+        format!("found by step {seq}")
     }
 
     #[test]
