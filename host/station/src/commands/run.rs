@@ -225,11 +225,13 @@ fn document(saved: &Saved, recovered: &[Saved], exit: Exit) -> Result<String, Fa
         .map(|Saved { record: Record { run, .. }, .. }| json!({ "run": run.id, "serial": run.serial }))
         .collect();
     let rest = json!({
+        "board": record.board,
         "run": record.run,
         "plan": { "name": plan.name, "version": plan.version, "sha256": plan.sha256 },
         "cause": ended.cause,
         "headline": ended.headline,
         "remedy": ended.remedy,
+        "finding": ended.finding,
         "device": record.device,
         "production": record.production,
         "marginal": record.marginal,

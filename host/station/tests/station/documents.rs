@@ -43,6 +43,8 @@ fn a_run_is_a_document_whatever_it_comes_to() {
         let said = document(&run(&station, serial, board));
         assert_eq!((&said["verdict"], &said["cause"]), (&verdict.into(), &cause.into()), "{said:#}");
         assert_eq!(said["run"]["serial"], serial);
+        let kind = if cause == "link" { Value::Null } else { "mock".into() };
+        assert_eq!((&said["board"]["kind"], said["finding"]["code"].is_string()), (&kind, true), "{said:#}");
         let hash = said["record_sha256"].as_str().unwrap();
         assert_eq!(crate::runs::bench::sha256sum(&station.store().blobs().path(hash)), hash);
     }
