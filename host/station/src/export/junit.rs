@@ -45,6 +45,7 @@ fn properties(record: &Record) -> Vec<(&'static str, String)> {
         ("board.target", run.target.clone()),
         ("halfrow.version", record.program.clone()),
     ];
+    list.extend(record.conclusion.finding.iter().map(|said| ("code", said.code.clone())));
     if !run.variant.is_empty() {
         list.push(("variant", run.variant.clone()));
     }

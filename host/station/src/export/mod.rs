@@ -129,6 +129,7 @@ mod tests {
     use super::*;
     use crate::record::BoardSeen;
     use crate::record::tests::pass;
+    use crate::said::Said;
 
     /// Whoever has only the export must be able to find the board, the run, and what judged it.
     #[test]
@@ -143,6 +144,7 @@ mod tests {
         (record.run.station, record.run.lane, record.run.operator) =
             (text("station"), text("lane"), text("operator"));
         (record.run.target, record.run.id) = (text("target"), text("run"));
+        record.conclusion.finding = Some(Said { code: text("code"), ..Said::uncoded(text("finding")) });
         (record.plan.name, record.plan.version, record.plan.sha256) =
             (text("plan"), text("version"), text("hash"));
         for format in [Format::Junit, Format::Csv, Format::OpenHtf] {
@@ -151,7 +153,7 @@ mod tests {
             let is_missing = |word: &&str| !said.contains(&text(word));
             let words = [
                 "run", "product", "serial", "variant", "plan", "version", "hash", "station", "lane",
-                "operator", "target", "kind", "device", "build", "program",
+                "operator", "target", "kind", "device", "build", "program", "code",
             ];
             assert_eq!(words.into_iter().filter(is_missing).collect::<Vec<_>>(), [""; 0], "{format:?}");
         }

@@ -41,7 +41,7 @@ pub(super) fn of(record: &Record) -> Value {
 
 /// What OpenHTF has no member for.
 fn metadata(record: &Record) -> Value {
-    let Record { run, plan, board, .. } = record;
+    let Record { run, plan, board, conclusion, .. } = record;
     json!({
         "test_name": plan.name,
         "test_version": plan.version,
@@ -57,6 +57,8 @@ fn metadata(record: &Record) -> Value {
         "board_build": board.as_ref().map(|board| &board.build),
         "program": record.program,
         "production": record.production,
+        // The code among the outcome's details is the cause.
+        "finding_code": conclusion.finding.as_ref().map(|said| &said.code),
         "config": {},
     })
 }

@@ -59,7 +59,10 @@ const OF_MEASUREMENT: [Column<Measured>; 7] = [
 ];
 
 /// Further ones of the run, at the end: whoever reads by place finds the others where they were.
-const FURTHER: [Column<Record>; 1] = [("program", |of| of.program.clone())];
+const FURTHER: [Column<Record>; 2] = [
+    ("program", |of| of.program.clone()),
+    ("code", |of| of.conclusion.finding.as_ref().map(|said| said.code.clone()).unwrap_or_default()),
+];
 
 /// A table that is being written.
 #[derive(Debug)]

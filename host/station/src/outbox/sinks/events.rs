@@ -13,6 +13,7 @@ use super::{SinkError, SinkSettingsError};
 use crate::clock;
 use crate::outbox::{Sink, Undelivered};
 use crate::record::Record;
+use crate::said::Said;
 use crate::secret;
 use crate::settings::{Login, SinkAddress};
 use crate::store::{Parcel, Waiver};
@@ -54,6 +55,8 @@ struct RunEvent<'a> {
     verdict: String,
     cause: &'a str,
     headline: &'a str,
+    /// The headline with its code.
+    finding: Option<&'a Said>,
     started_ms: i64,
     ended_ms: i64,
     /// Whether it counts as production.
@@ -76,6 +79,7 @@ impl<'a> RunEvent<'a> {
             verdict: conclusion.verdict.to_string(),
             cause: conclusion.cause.as_ref(),
             headline: &conclusion.headline,
+            finding: conclusion.finding.as_ref(),
             started_ms: run.started_ms,
             ended_ms: *ended_ms,
             production: *production,
@@ -256,6 +260,7 @@ mod tests {
             "verdict": "PASS",
             "cause": "none",
             "headline": "all is right",
+            "finding": null,
             "started_ms": 1_000,
             "ended_ms": 2_500,
             "production": true,

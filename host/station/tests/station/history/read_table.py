@@ -45,6 +45,7 @@ for record in records.values():
                 assert row[name] == ended[name], (name, row)
             assert int(row["exit_code"]) == ended["exit_code"]
             assert row["program"] == record["program"], row
+            assert row["code"] == (ended.get("finding") or {}).get("code", ""), row
             assert [row["production"], row["marginal"]] == [str(record[n]).lower() for n in ["production", "marginal"]]
             assert [int(row["seq"]), int(row["attempt"])] == [seq, attempt], row
             if step:
