@@ -106,10 +106,12 @@ pub struct RunLine {
     pub waived: bool,
     /// The hash of the record.
     pub record_sha256: Option<String>,
+    /// `mock`, `sim`, `replay` or `hardware`; `None` also if the board did not say what it is.
+    pub board_kind: Option<String>,
 }
 
 impl RunLine {
-    /// From the first sixteen columns.
+    /// From the first seventeen columns.
     pub(super) fn of(row: &Found<'_>) -> Result<Self, DatabaseError> {
         Ok(Self {
             id: row.get(0)?,
@@ -128,6 +130,7 @@ impl RunLine {
             nth: row.get(13)?,
             waived: row.get(14)?,
             record_sha256: row.get(15)?,
+            board_kind: row.get(16)?,
         })
     }
 

@@ -53,9 +53,7 @@ pub struct UnitRun {
     pub variant: String,
     /// The target string of the board.
     pub target: String,
-    /// `mock`, `sim`, `replay` or `hardware`; `None`, like the next two, if the board did not say what it is.
-    pub board_kind: Option<String>,
-    /// The FPGA's own number, in hexadecimal.
+    /// The FPGA's own number, in hexadecimal; `None`, like the next one, if the board did not say what it is.
     pub device: Option<String>,
     /// The build's commit, in hexadecimal.
     pub build: Option<String>,
@@ -196,9 +194,8 @@ fn by_run<T>(
 fn run(row: &Found<'_>) -> Result<UnitRun, DatabaseError> {
     Ok(UnitRun {
         line: RunLine::of(row)?,
-        variant: row.get(16)?,
-        target: row.get(17)?,
-        board_kind: row.get(18)?,
+        variant: row.get(17)?,
+        target: row.get(18)?,
         device: row.get(19)?,
         build: row.get(20)?,
         exit_code: row.get(21)?,

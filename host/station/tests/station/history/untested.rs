@@ -53,6 +53,18 @@ fn a_pass_says_what_was_not_tested_wherever_it_is_told() {
     }
 }
 
+/// Whoever counts runs by either must be able to leave out the mock.
+#[test]
+fn what_kind_of_board_it_was_is_told_of_a_run_wherever_it_is_listed() {
+    let made = judged(PLAN, "mock");
+    for (arguments, run) in
+        [(&["history", "--json"][..], "/runs/0"), (&["unit", "CAT00001", "--json"], "/0/runs/0")]
+    {
+        let said: serde_json::Value = serde_json::from_str(&did(&made, arguments).1).unwrap();
+        assert_eq!(said.pointer(run).unwrap()["board_kind"], "mock", "{said:#}");
+    }
+}
+
 /// Nobody counts what such a fault explains.
 #[test]
 fn no_share_is_told_of_a_suspect_of_which_none_was_counted() {
