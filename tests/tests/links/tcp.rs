@@ -137,7 +137,7 @@ fn a_board_behind_a_long_greeting_that_goes_away_was_there() {
             link.exchange(&[0], &mut came, LIMIT).unwrap();
         }
     };
-    assert!(matches!(lost, LinkError::Closed { .. }), "{lost}");
+    assert!(matches!(lost, LinkError::ClosedAfar { .. }), "{lost}");
     server.join().unwrap();
 }
 
