@@ -9,9 +9,9 @@
 //! A program describes what to judge in a [`Plan`], opens a link to a board or brings a [`Candidate`] with a link of its own, and
 //! calls [`verify`] with [`RunOptions`]. This returns [`Finished`], which holds a [`Report`] with a [`Verdict`] and its
 //! [`Cause`]; [`Finished::commit`] writes it to disk. A run takes the calling thread and one that
-//! computes ahead of the board, and reports what it does to a [`Progress`]. The
-//! frames that it keeps have a budget, [`RunOptions::evidence_bytes`], so its memory does not grow with the number of frames,
-//! except for some hundred bytes each in the report.
+//! computes ahead of the board, and reports what it does to a [`Progress`]. The frames that it keeps have a budget,
+//! [`RunOptions::evidence_bytes`], so its memory does not grow with the number of frames, except for some hundred bytes each in
+//! the report.
 //!
 //! Errors are typed, and end with what to do. [`Problem::of`](result::Problem::of) makes data of any of them, with a stable code
 //! to tell them apart by, which `docs/CODES.md` lists.

@@ -179,7 +179,7 @@ impl Lane {
         attendant: &mut dyn Attendant,
         steps: &mut Vec<StepRecord>,
     ) -> End {
-        let mut waited = Waited::since(Instant::now());
+        let mut waited = Waited { time: Duration::ZERO, looked: Instant::now() };
         let (mut last, mut asked) = (Duration::ZERO, None);
         loop {
             let line = self.lines.recv_timeout(LOOK);
@@ -333,10 +333,6 @@ struct Waited {
 }
 
 impl Waited {
-    fn since(looked: Instant) -> Self {
-        Self { time: Duration::ZERO, looked }
-    }
-
     /// Counts the time since the last look, as far as a look may have taken it.
     fn look(&mut self) {
         let now = Instant::now();

@@ -28,22 +28,8 @@ macro_rules! as_they_are {
         }
     })+ };
 }
-as_they_are!(
-    u8,
-    u16,
-    u32,
-    u64,
-    usize,
-    i32,
-    i64,
-    f64,
-    bool,
-    String,
-    &'static str,
-    Box<Errors>,
-    StoppedBy,
-    UsbBoard
-);
+as_they_are!(u8, u16, u32, u64, usize, i32, i64, f64, bool, String, &'static str);
+as_they_are!(Box<Errors>, StoppedBy, UsbBoard);
 
 /// Implements [`Parameter`] for types that are written as their text.
 macro_rules! by_words {

@@ -15,7 +15,8 @@ const FLAGS: usize = 10;
 const LAST: u8 = 1;
 
 impl Rules<'_, '_> {
-    /// Sends a black row at `place` with what a board must ignore, which must be refused all the same. Ends with `rule` if the row is not refused without all that either.
+    /// Sends a black row at `place` with what a board must ignore, which must be refused all the same. Ends with `rule` if the row
+    /// is not refused without all that either.
     pub(super) fn marked_row_refused(
         &mut self,
         rule: Rule,
