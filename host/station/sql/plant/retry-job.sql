@@ -1,1 +1,1 @@
-UPDATE job SET state = 'waiting', attempts = 0 WHERE id = $1 AND {job_state} = 'dead';
+UPDATE job SET state = 'waiting', attempts = 0 WHERE id = $1 AND {job_state} IN ('dead', 'cancelled');

@@ -122,7 +122,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         Action::List { state, most, json } => {
             let states = match state {
                 Some(state) => vec![*state],
-                None => vec![JobState::Waiting, JobState::Claimed, JobState::Dead],
+                None => JobState::UNSETTLED.to_vec(),
             };
             let found = PlantLink::new(address).look(|now| jobs(now, &states, "", *most))?;
             either(&found, *json, |found| text(found))
@@ -199,7 +199,7 @@ fn text(jobs: &[Job]) -> String {
             (None, Some(holder)) if job.state == JobState::Claimed => format!("claimed by {holder}"),
             _ => job.state.to_string(),
         };
-        let plan = format!("{} {}", job.plan, job.version);
+        let plan = format!("{} {} {}", job.product, job.plan, job.version);
         let (tries, priority) = (job.attempts.to_string(), job.priority.to_string());
         let said = job.said.clone().unwrap_or_default();
         vec![job.id.clone(), time(job.created_ms), plan, about, priority, state, tries, said]

@@ -18,7 +18,7 @@ pub(super) const OF_PLANT: [(&str, &str); 15] = [
     // How it stands with a job. The end of its lease is not written down before its next claim.
     (
         "{job_state}",
-        "CASE WHEN {is_exhausted} THEN 'dead' WHEN {is_lapsed} THEN 'waiting' ELSE job.state END",
+        "CASE WHEN {is_cancelled} THEN 'cancelled' WHEN {is_exhausted} THEN 'dead' WHEN {is_lapsed} THEN 'waiting' ELSE job.state END",
     ),
     // Why it was given up then.
     ("{exhausted}", "'it was claimed five times, and no run of it was judged'"),
@@ -213,6 +213,8 @@ statements! {
     pub(super) JOBS = "plant/jobs.sql";
     pub(super) OPEN_JOBS = "plant/open-jobs.sql";
     pub(super) DEAD_JOBS = "plant/dead-jobs.sql";
+    pub(super) COUNTED_JOBS = "plant/counted-jobs.sql";
+    pub(super) SEEN_UNITS = "plant/seen-units.sql";
     pub(super) ADD_BUNDLE = "plant/add-bundle.sql";
     pub(super) BUNDLE = "plant/bundle.sql";
     pub(super) PUBLISH = "plant/publish.sql";

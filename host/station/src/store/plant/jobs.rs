@@ -1,9 +1,12 @@
 //! Jobs: what any free station is to judge. A job and its board are claimed together or not at all, and held until a time by
 //! the plant's clock. A job is done when a PASS or FAIL of its last claim has come to the plant.
 
+use std::collections::BTreeSet;
+
 use clap::ValueEnum;
 use halfrow::Verdict;
 use serde::Serialize;
+use serde_json::json;
 use strum::{Display, EnumString, VariantArray};
 
 use super::super::database::{Database, DatabaseError, FromValue, Row, Value, values};
@@ -24,12 +27,19 @@ pub enum JobState {
     Claimed,
     /// It was judged.
     Done,
-    /// It came to nothing and waits for a person, or a person cancelled it.
+    /// It came to nothing and waits for a person.
     Dead,
+    /// A person cancelled it.
+    Cancelled,
+}
+
+impl JobState {
+    /// Those in which something is still to be done.
+    pub(crate) const UNSETTLED: [Self; 3] = [Self::Waiting, Self::Claimed, Self::Dead];
 }
 
 impl FromValue for JobState {
-    const EXPECTED: &'static str = "waiting, claimed, done or dead";
+    const EXPECTED: &'static str = "waiting, claimed, done, dead or cancelled";
 
     fn from_value(value: Value<'_>) -> Option<Self> {
         if let Value::Text(text) = value { text.parse().ok() } else { None }
@@ -350,6 +360,24 @@ pub(crate) fn open_jobs(of: &Snapshot) -> Result<Vec<JobsInState>, StoreError> {
 pub(crate) fn dead_jobs(of: &Snapshot) -> Result<u32, StoreError> {
     let counted = of.rows("to count its jobs", sql::DEAD_JOBS, &[], |row| row.get::<u32>(0))?;
     Ok(counted.into_iter().sum())
+}
+
+/// How many jobs are in each state; a state without jobs is left out. This reads every job.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read.
+pub(crate) fn counted_jobs(of: &Snapshot) -> Result<Vec<(JobState, u32)>, StoreError> {
+    of.rows("to count its jobs", sql::COUNTED_JOBS, &[], |row| Ok((row.get(0)?, row.get(1)?)))
+}
+
+/// Which of these serial numbers any unit has that was tested.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read.
+pub(crate) fn seen_units(of: &Snapshot, serials: &[&str]) -> Result<BTreeSet<String>, StoreError> {
+    let serials = json!(serials).to_string();
+    let seen = of.rows("to tell its units", sql::SEEN_UNITS, values![&serials], |row| row.get(0))?;
+    Ok(seen.into_iter().collect())
 }
 
 fn job(row: &Row<'_>) -> Result<Job, DatabaseError> {

@@ -202,8 +202,9 @@ fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
     plant.wait(&Waiter::new("ulx3s", "weber", "13", now_ms()).unwrap()).unwrap();
     let page = text(&browser, "/jobs");
     for expected in [
-        "<a href=\"/unit?serial=CAT00007\">CAT00007</a>",
-        "quick 1",
+        "<td>CAT00007</td>",
+        "<div class=\"soft\">engel</div>",
+        "CAM-T quick 1",
         "any ulx3s",
         "shelf-1",
         "north 1",
@@ -217,11 +218,11 @@ fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
     let after = page.split("&amp;after=").nth(1).unwrap().split('"').next().unwrap();
     let older = text(&browser, &format!("/jobs?state=&after={after}"));
     assert_eq!(older.matches("any ulx3s").count(), 2);
-    // What is no state asks for all, and adds nothing to the link.
-    let other = text(&browser, "/jobs?state=x%26after%3D0%23");
-    let link = other.split("href=\"/jobs?state=").find(|link| link.contains("after=")).unwrap();
-    assert!(link.starts_with(&format!("&amp;after={after}\"")), "{link}");
-    assert_eq!(text(&browser, "/jobs?state=claimed").matches("any ulx3s").count(), 1);
+    for wrong in ["state=x%26after%3D0%23", "after=x"] {
+        assert_eq!(browser.get(&format!("/jobs?{wrong}")).send().status, 400, "{wrong}");
+    }
+    let claimed = text(&browser, "/jobs?state=claimed");
+    assert_eq!(claimed.matches("any ulx3s").count(), 1);
     assert!(text(&browser, "/jobs?state=done").contains("There is no such job"));
 }
 
@@ -242,3 +243,52 @@ fn a_plant_that_is_away_is_said_to_be_and_is_shown_again_when_it_is_back() {
     server.again();
     text(&browser, "/history");
 }
+#[test]
+fn a_page_that_is_just_full_leads_no_further_and_a_unit_without_runs_leads_nowhere() {
+    let server = Server::prepared();
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    let (_folder, serving) = served(&server);
+    let browser = serving.here();
+    plant.add_jobs(&job(&plan(), &Wanted::Serial("CAT00007".to_owned())), 100).unwrap();
+    let link = "<a href=\"/unit?serial=CAT00007\">CAT00007</a>";
+    let untested = text(&browser, "/jobs");
+    assert!(untested.matches("CAT00007").count() == 100 && !untested.contains("after="), "{untested}");
+    assert!(!untested.contains(link), "{untested}");
+    server.change("INSERT INTO unit (id, product, serial, first_seen_ms) VALUES (gen_random_uuid()::text, 'CAM-T', 'CAT00007', 0)");
+    let tested = text(&browser, "/jobs");
+    assert!(tested.contains(link), "{tested}");
+}
+
+#[test]
+fn the_page_of_jobs_begins_with_what_is_not_settled() {
+    let server = Server::prepared();
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    let (_folder, serving) = served(&server);
+    let plan = plan();
+    let ids = plant.add_jobs(&job(&plan, &Wanted::Kind("ulx3s".to_owned())), 4).unwrap();
+    plant.cancel_job(&ids[0], engel(&reason("a mistake"))).unwrap();
+    for (id, state) in [(&ids[1], "dead"), (&ids[2], "done")] {
+        server.change(&format!("UPDATE job SET state = '{state}', attempts = 1 WHERE id = '{id}'"));
+    }
+    let lists = |path: &str| {
+        let page = text(&serving.here(), path);
+        ids.iter().map(|id| page.contains(&format!("title=\"{id}\""))).collect::<Vec<_>>()
+    };
+    assert_eq!(lists("/jobs"), [false, true, false, true]);
+    assert_eq!(lists("/jobs?state=cancelled"), [true, false, false, false]);
+    assert_eq!(lists("/jobs?state=dead"), [false, true, false, false]);
+    assert_eq!(lists("/jobs?state=all"), [true; 4]);
+    let page = text(&serving.here(), "/jobs");
+    let counted = [
+        "Not settled</a> 2 ",
+        "waiting</a> 1 ",
+        "being judged</a> 0 ",
+        "came to nothing</a> 1 ",
+        "cancelled</a> 1 ",
+    ];
+    for counted in counted {
+        assert!(page.contains(counted), "{counted}: {page}");
+    }
+    assert!(page.find("Shared boards").unwrap() < page.find("Not settled").unwrap(), "{page}");
+}
+
