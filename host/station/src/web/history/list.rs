@@ -7,7 +7,7 @@ use axum::response::Response;
 use halfrow::Verdict;
 use maud::{Markup, html};
 
-use super::run_filter::{RunFilter, unit_address};
+use super::run_filter::{RunFilter, station_address, unit_address};
 use super::show;
 use crate::history;
 use crate::history::runs::{self, RunLine};
@@ -162,8 +162,10 @@ fn row(visit: &Visit, run: &RunLine) -> Markup {
             td.when { a href=(show::run_address(&run.id)) { (show::titled_moment(run.started_ms)) } }
             td.serial { a href=(unit_address(&run.serial)) { (show::said(&run.serial)) } }
             td.outcome { (show::outcome(visit, run)) }
-            td.plan { (show::said(&run.plan)) " " (show::said(&run.version)) }
-            @if visit.is_plant { td.lane { (of_card(visit.say("nav.station"))) (show::said(&run.station)) } }
+            td.plan { (show::said(&run.product)) " " (show::said(&run.plan)) " " (show::said(&run.version)) }
+            @if visit.is_plant {
+                td.lane { (of_card(visit.say("nav.station"))) a href=(station_address(&run.station)) { (show::said(&run.station)) } }
+            }
             td.lane { (of_card(visit.say("history.lane"))) (show::said(&run.lane)) }
             td.operator { (of_card(visit.say("history.operator"))) (show::said(&run.operator)) }
             td.headline { @if let Some(headline) = &run.headline { (show::english(visit, headline)) } }

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use crate::history::runs::{Cursor, Filter};
 use crate::history::yields::Wanted;
 use crate::history::{Period, moment};
+use crate::plan::PlanName;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
@@ -140,6 +141,12 @@ impl RunFilter {
         }
     }
 
+    /// The address of those runs of the query that are of this station under this plan.
+    pub(super) fn address_of(&self, station: &str, PlanName { product, plan }: &PlanName) -> String {
+        let [station, product, plan] = [station, product, plan].map(ToOwned::to_owned);
+        Self { station, product, plan, by: String::new(), ..self.clone() }.address("/history", None)
+    }
+
     /// Whether it asks for a page that is not the first.
     pub(super) fn is_further(&self) -> bool {
         !self.after.is_empty()
@@ -149,6 +156,11 @@ impl RunFilter {
 /// The address of the page of a serial number.
 pub(in crate::web) fn unit_address(serial: &str) -> String {
     RunFilter::of_serial(serial).address("/unit", None)
+}
+
+/// The address of the runs of a plant's station.
+pub(in crate::web) fn station_address(station: &str) -> String {
+    RunFilter { station: station.to_owned(), ..RunFilter::default() }.address("/history", None)
 }
 
 fn some(text: &str) -> Option<String> {

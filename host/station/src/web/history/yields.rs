@@ -56,8 +56,8 @@ pub(super) async fn page(
             p.nothing { (visit.say("history.none")) }
         } @else {
             @if matches!(by, By::Day | By::Week) { (drawn(&visit, &lines)) }
-            @if by == By::Station { (drifting(&visit, &drifts(&lines))) }
-            (table(&visit, by, &lines))
+            @if by == By::Station { (drifting(&visit, &asked, &drifts(&lines))) }
+            (table(&visit, by, &asked, &lines))
         }
         (flipped(&visit, &flips))
     };
@@ -114,7 +114,8 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
     let (first, colon) = (visit.say("yield.first"), visit.say("told.colon"));
     html! {
         @for of_plan in lines.chunk_by(|one, other| one.plan == other.plan) {
-            @let title = format!("{first}{colon}{}", of_plan[0].plan.plan);
+            @let PlanName { product, plan } = &of_plan[0].plan;
+            @let title = format!("{first}{colon}{product} {plan}");
             figure.days {
                 figcaption { (show::said(&title)) }
                 div.wide tabindex="0" role="region" aria-label=(show::said(&title)) { (bars::days(visit, first, &named_days(visit, of_plan))) }
@@ -155,15 +156,22 @@ fn named_days(visit: &Visit, of_plan: &[Yield]) -> Vec<Day> {
 }
 
 /// Stations that judge differently from all others.
-fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
+fn drifting(visit: &Visit, asked: &RunFilter, drifts: &[Drift]) -> Markup {
     let marked: Vec<_> = drifts.iter().filter(|drift| drift.is_marked).collect();
+    let compared = drifts.iter().filter(|drift| drift.chance.is_some()).count();
+    let counts = [("compared", &*compared.to_string()), ("all", &drifts.len().to_string())];
     html! {
         @if !drifts.is_empty() {
             p.soft { (visit.say("yield.drift_about")) }
-            @if marked.is_empty() { p { (visit.say("yield.no_drift")) } }
+            @if compared == 0 { p { (visit.say("yield.uncompared")) } } @else {
+                p {
+                    @if marked.is_empty() { (visit.say("yield.no_drift")) " " }
+                    (visit.words.fill("yield.compared", &counts))
+                }
+            }
             @for Drift { plan, station, here, elsewhere, chance, .. } in marked {
                 p.beyond {
-                    b { (show::said(station)) } " · " (show::said(&plan.product)) " " (show::said(&plan.plan)) (visit.say("told.colon"))
+                    (station_link(visit, asked, station, plan)) " · " (show::said(&plan.product)) " " (show::said(&plan.plan)) (visit.say("told.colon"))
                     (show::share(visit, here)) " " span.soft { (show::of(here)) } " · "
                     (visit.say("yield.elsewhere")) " " (show::share(visit, elsewhere)) " " span.soft { (show::of(elsewhere)) }
                     @if let Some(chance) = chance { " · p " (visit.words.figures(&chance_text(*chance))) }
@@ -178,7 +186,7 @@ fn chance_text(chance: f64) -> String {
     if chance < LEAST_CHANCE { format!("< {LEAST_CHANCE:e}") } else { format!("= {chance:.1e}") }
 }
 
-fn table(visit: &Visit, by: By, lines: &[Yield]) -> Markup {
+fn table(visit: &Visit, by: By, asked: &RunFilter, lines: &[Yield]) -> Markup {
     let mut of = vec![word(visit, by)];
     of.extend((by != By::Plan).then(|| word(visit, By::Plan)));
     let of = of.join(visit.say("told.list"));
@@ -191,20 +199,20 @@ fn table(visit: &Visit, by: By, lines: &[Yield]) -> Markup {
                 th.number { (visit.say("history.runs")) } th { (visit.say("yield.errors")) }
                 th.number { (visit.say("yield.crashes")) }
             } }
-            tbody { @for line in lines.iter().take(MOST_LINES) { (row(visit, line)) } }
+            tbody { @for line in lines.iter().take(MOST_LINES) { (row(visit, asked, line)) } }
         } }
         @if lines.len() > MOST_LINES { p.soft { (visit.say("yield.narrow")) } }
     }
 }
 
-fn row(visit: &Visit, line: &Yield) -> Markup {
+fn row(visit: &Visit, asked: &RunFilter, line: &Yield) -> Markup {
     let Yield { plan, first_pass, last, errors, .. } = line;
     html! {
         tr {
             td.name {
                 @if let Some(day) = line.day.or(line.week) { b { (day) } " " }
                 @if let Some(station) = line.station.as_ref().filter(|_| visit.is_plant || line.lane.is_none()) {
-                    b { (show::said(station)) } " "
+                    (station_link(visit, asked, station, plan)) " "
                 }
                 @if let Some(lane) = &line.lane {
                     b { (visit.say("history.lane")) " " (show::said(lane)) } " "
@@ -221,6 +229,12 @@ fn row(visit: &Visit, line: &Yield) -> Markup {
             td.number { (line.crashes) }
         }
     }
+}
+
+/// A station, which leads to its runs where there are several stations.
+fn station_link(visit: &Visit, asked: &RunFilter, station: &str, plan: &PlanName) -> Markup {
+    let name = html! { b { (show::said(station)) } };
+    html! { @if visit.is_plant { a href=(asked.address_of(station, plan)) { (name) } } @else { (name) } }
 }
 
 /// A share with its interval and its counts, and a word where the units are few.

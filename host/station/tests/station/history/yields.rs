@@ -277,6 +277,41 @@ fn a_chance_that_nobody_can_imagine_is_told_as_less_than_one_that_can_be() {
     assert!(page.contains(" · p &lt; 1e-15") && !page.contains("p = "), "{page}");
 }
 
+/// Of 12 units four passed, so two would be expected at each station, and five are needed.
+#[test]
+fn stations_with_too_few_units_are_not_said_to_be_alike() {
+    let page = |cases: &[(&'static str, i64, [i64; 2])]| {
+        let mut made = Made::new();
+        for &(plan, units, passed) in cases {
+            for (number, (station, passed)) in (0..units)
+                .flat_map(|number| ["north", "south"].into_iter().zip(passed).map(move |of| (number, of)))
+            {
+                let end = if number < passed { End::Pass } else { End::Fail(&["memory"]) };
+                let run = Run::of(&format!("{plan} {station} {number}"), end);
+                made.run(&Run { station, plan: (plan, "1"), started_ms: BEGIN_MS + number, ..run });
+            }
+        }
+        Served::of(made).page("/yield?by=station")
+    };
+    let few = ("few", 6, [4, 0]);
+    let alike = "No station differs by more than chance.";
+    let none = page(&[few]);
+    assert!(none.contains("Too few units to compare stations.") && !none.contains(alike), "{none}");
+    let some = page(&[few, ("many", 40, [20, 20])]);
+    assert!(some.contains(alike) && some.contains("could be compared: 2 of 4."), "{some}");
+}
+
+#[test]
+fn charts_of_two_products_are_told_apart() {
+    let mut made = Made::new();
+    for product in ["CAM-T", "CAM-U"] {
+        made.run(&Run { product, ..Run::of(product, End::Pass) });
+    }
+    let page = Served::of(made).page("/yield?by=day");
+    let captions = all_between(&page, "<figcaption>", '<');
+    assert_eq!(captions, ["First pass: CAM-T final", "First pass: CAM-U final"]);
+}
+
 /// Of 70 units five failed, all of them on a day before those that are drawn.
 #[test]
 fn a_day_beyond_the_band_is_named_although_it_is_not_drawn() {
