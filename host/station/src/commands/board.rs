@@ -19,6 +19,7 @@ use super::why::{Why, at_plant, name, person};
 use super::{Failure, print, tell};
 use crate::console;
 use crate::exit::Exit;
+use crate::history::stations::stations;
 use crate::said::Said;
 use crate::settings::moving;
 use crate::store::{Plant, PlantAddress, PlantLink, SharedBoard, StoreError, Turn, Waiter, boards};
@@ -172,6 +173,9 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             }
             link::check(&share.board).map_err(Failure::call)?;
             share.refuse_other_place().map_err(Failure::call)?;
+            if let Some(station) = &share.station {
+                warn_of_no_station(&address, station)?;
+            }
             shared(&mut at_plant(&address, &share.operator, &format!("board share {}", share.name))?, share)
         }
         Action::List { json } => {
@@ -234,6 +238,18 @@ fn is_own(board: &Target) -> bool {
         }
         Some(Place::Program) | None => false,
     }
+}
+
+/// Warns of a board that nobody reaches.
+fn warn_of_no_station(address: &PlantAddress, name: &str) -> Result<(), Failure> {
+    let found = PlantLink::new(address.clone()).look(stations)?;
+    if !found.iter().any(|station| station.name == name) {
+        console::diagnose(&format_args!(
+            "warning: no station {name} was ever heard from; nobody gets the board before one is: the plant's first page \
+             lists those that were"
+        ));
+    }
+    Ok(())
 }
 
 /// Shares a board, or says as which other board this unit is shared already.

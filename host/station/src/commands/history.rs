@@ -11,6 +11,8 @@ use crate::history::runs::{Cursor, MOST, Page, RunLine, page};
 
 /// The most characters of a result that are shown.
 const MOST_RESULT: usize = 80;
+/// The column of the station, before the lane that it has.
+const STATION_AT: usize = 4;
 
 /// List runs, the newest first
 #[derive(Debug, Args)]
@@ -33,7 +35,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let filter = arguments.filtered.filter()?;
     let page = page(&arguments.results.snapshot()?, &filter, arguments.after.as_ref(), arguments.limit)?;
-    either(&page, arguments.json, text)
+    either(&page, arguments.json, |page| text(page, arguments.results.is_of_plant()))
 }
 
 /// The run's verdict, or that it is open.
@@ -51,21 +53,28 @@ fn why(run: &RunLine) -> String {
     }
 }
 
-fn text(page: &Page) -> String {
+fn text(page: &Page, is_plant: bool) -> String {
     let rows = page.runs.iter().map(|run| {
         let waived = if run.waived { ", waived" } else { "" };
-        vec![
+        let mut row = vec![
             time(run.started_ms),
             run.serial.clone(),
             format!("{}{waived}", verdict(run)),
-            format!("{} {}", run.plan, run.version),
+            format!("{} {} {}", run.product, run.plan, run.version),
             run.lane.clone(),
             run.operator.clone(),
             run.id.clone(),
             why(run),
-        ]
+        ];
+        if is_plant {
+            row.insert(STATION_AT, run.station.clone());
+        }
+        row
     });
-    let header = ["began", "serial", "verdict", "plan", "lane", "operator", "run", "result"];
+    let mut header = vec!["began", "serial", "verdict", "plan", "lane", "operator", "run", "result"];
+    if is_plant {
+        header.insert(STATION_AT, "station");
+    }
     if page.runs.is_empty() {
         return "no runs".to_owned();
     }

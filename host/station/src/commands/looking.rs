@@ -45,6 +45,11 @@ pub(super) struct Results {
 }
 
 impl Results {
+    /// Whether they are of several stations.
+    pub(super) const fn is_of_plant(&self) -> bool {
+        self.plant.is_some()
+    }
+
     /// The results as they are now.
     pub(super) fn snapshot(&self) -> Result<Snapshot, Failure> {
         if let Some(path) = &self.plant {

@@ -3,11 +3,13 @@
 use std::fs::{self, File};
 use std::process::Command;
 
+use halfrow_station::store::Plant;
 use serde_json::Value;
 
 use super::{settings, shared};
 use crate::clocks::Clocks;
 use crate::common::{Did, command, did_in, program};
+use crate::plant::sent::introduction;
 use crate::plant::server::Server;
 
 /// Runs the commands of an engineer at a plant.
@@ -217,4 +219,16 @@ fn a_station_whose_settings_say_nothing_of_jobs_takes_none() {
     fs::write(&path, text.split("[work]").next().unwrap()).unwrap();
     let refused = engineer.did(&["work", "--once", "--any-disk"]);
     assert!(refused.code == Some(2) && refused.complained.contains("into [work]"), "{refused:?}");
+}
+
+#[test]
+fn whoever_shares_a_board_with_a_station_that_was_never_heard_from_is_told() {
+    let engineer = Engineer::new();
+    let share = ["board", "share", "a", "--operator", "engel", "--kind", "mock", "--board", "mock"];
+    let mut plant = Plant::connect(&engineer.server.address()).unwrap();
+    plant.see(&introduction("station 8", "018f0000-0000-7000-8000-000000000000".to_owned())).unwrap();
+    for (station, is_told) in [("station 8", false), ("nowhere", true)] {
+        let did = engineer.did(&[&share[..], &["--station", station]].concat());
+        assert_eq!((did.code, did.complained.contains("no station nowhere")), (Some(0), is_told), "{did:?}");
+    }
 }

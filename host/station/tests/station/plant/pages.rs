@@ -9,7 +9,7 @@ use halfrow_station::store::{Waiter, Wanted};
 
 use super::sent::{introduction, send};
 use super::server::Server;
-use crate::common::{engel, now_ms, program, query, reason};
+use crate::common::{Did, engel, now_ms, program, query, reason};
 use crate::history::made::Made;
 use crate::history::released::history;
 use crate::jobs::{board, job, plan, worker};
@@ -227,23 +227,6 @@ fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
 }
 
 #[test]
-fn a_plant_that_is_away_is_said_to_be_and_is_shown_again_when_it_is_back() {
-    let mut server = Server::prepared();
-    let (_made, _) = send(history(), server.address());
-    let (_folder, serving) = served(&server);
-    let browser = serving.here();
-    text(&browser, "/history");
-    server.kill();
-    let away = browser.get("/history").with("accept", "text/html").send();
-    assert_eq!(away.status, 503, "{}", away.text());
-    assert!(away.text().contains("check that it is there"), "{}", away.text());
-    let german = browser.get("/history").with("accept", "text/html").with("accept-language", "de").send();
-    let german = german.text();
-    assert!(german.contains("lehnt ab: eine ") && german.contains("prüfen, ob es da ist"), "{german}");
-    server.again();
-    text(&browser, "/history");
-}
-#[test]
 fn a_page_that_is_just_full_leads_no_further_and_a_unit_without_runs_leads_nowhere() {
     let server = Server::prepared();
     let mut plant = Plant::connect(&server.address()).unwrap();
@@ -292,3 +275,37 @@ fn the_page_of_jobs_begins_with_what_is_not_settled() {
     assert!(page.find("Shared boards").unwrap() < page.find("Not settled").unwrap(), "{page}");
 }
 
+#[test]
+fn a_plant_that_is_away_is_said_to_be_and_is_shown_again_when_it_is_back() {
+    let mut server = Server::prepared();
+    let (_made, _) = send(history(), server.address());
+    let (_folder, serving) = served(&server);
+    let browser = serving.here();
+    text(&browser, "/history");
+    server.kill();
+    let away = browser.get("/history").with("accept", "text/html").send();
+    assert_eq!(away.status, 503, "{}", away.text());
+    assert!(away.text().contains("check that it is there"), "{}", away.text());
+    let german = browser.get("/history").with("accept", "text/html").with("accept-language", "de").send();
+    let german = german.text();
+    assert!(german.contains("lehnt ab: eine ") && german.contains("prüfen, ob es da ist"), "{german}");
+    server.again();
+    text(&browser, "/history");
+}
+
+#[test]
+fn the_history_of_a_plant_names_the_station_of_each_run() {
+    let server = Server::prepared();
+    let (made, _) = send(history(), server.address());
+    let folder = crate::common::folder();
+    let settings = settings(&server, folder.path(), "");
+    for (of, path, is_named) in [("--plant", &*settings, true), ("--data", made.as_ref(), false)] {
+        let did: Did = Command::new(program()).arg("history").arg(of).arg(path).output().unwrap().into();
+        let header: Vec<_> = did.said.lines().next().unwrap().split_whitespace().collect();
+        assert_eq!(
+            (header.contains(&"station"), did.said.contains("station 7")),
+            (is_named, is_named),
+            "{did:?}"
+        );
+    }
+}
