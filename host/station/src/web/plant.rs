@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
-use super::history::{mismatch, show};
+use super::history::{mismatch, show, station_address};
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, look};
 use super::state::App;
@@ -20,9 +20,10 @@ pub(super) fn routes() -> Vec<Route> {
 }
 
 async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let (found, ambiguous, differing, plans) = app
+    let (mut found, ambiguous, differing, plans) = app
         .look(&visit, |now| Ok((stations(now)?, ambiguous(now)?, mismatches(now)?, publications(now)?)))
         .await?;
+    found.sort_by_key(|station| station.is_there);
     let content = html! {
         h1 { (visit.say("plant.stations")) }
         @if found.is_empty() { p.nothing { (visit.say("plant.none")) } } @else { (table(&visit, &found, &ambiguous)) }
@@ -37,7 +38,10 @@ async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble>
 }
 
 fn table(visit: &Visit, stations: &[Station], ambiguous: &[String]) -> Markup {
+    let silent = stations.iter().filter(|station| !station.is_there).count();
+    let counts = [("silent", &*silent.to_string()), ("all", &stations.len().to_string())];
     html! {
+        p.beyond[silent > 0] { (visit.words.fill("plant.silent", &counts)) }
         div.wide tabindex="0" role="region" aria-label=(visit.say("plant.stations")) { table.runs {
             thead { tr {
                 th { (visit.say("nav.station")) } th { (visit.say("plant.state")) } th { (visit.say("plant.seen")) }
@@ -73,7 +77,7 @@ fn published(visit: &Visit, plans: &[(Statement, i64)]) -> Markup {
 fn row(visit: &Visit, station: &Station, ambiguous: &[String]) -> Markup {
     html! {
         tr {
-            td.name { b { (show::said(&station.name)) } }
+            td.name { a href=(station_address(&station.name)) { b { (show::said(&station.name)) } } }
             td {
                 @if station.is_there { "● " (visit.say("plant.there")) } @else { "○ " (visit.say("plant.away")) }
             }

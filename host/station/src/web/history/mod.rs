@@ -19,7 +19,7 @@ pub(super) mod show;
 mod unit;
 mod yields;
 
-pub(super) use run_filter::unit_address;
+pub(super) use run_filter::{station_address, unit_address};
 
 use super::routes::{Route, Who, act, look};
 

@@ -109,7 +109,15 @@ fn exported(made: &Made, which: &[&str], format: &str) -> Vec<u8> {
 }
 
 /// What these pages have of the history whose story `released::is_true_of` tells.
-const CELLS: [(&str, [&str; 2]); 5] = [
+const CELLS: [(&str, [&str; 2]); 7] = [
+    ("/", ["<a href=\"/history?station=station+7\"><b>station 7</b>", "/history?station=station+8"]),
+    (
+        "/yield?by=station&lane=1",
+        [
+            "/history?product=CAM-T&amp;plan=final&amp;station=station+7&amp;lane=1\"><b>station 7</b>",
+            ">1/3</span>",
+        ],
+    ),
     ("/unit?serial=S1", ["<span class=\"verdict pass\"", "Suspected: memory, bit 3."]),
     ("/yield", [">2/4</span>", ">3/4</span>"]),
     ("/yield?by=lane", [">1/3</span>", ">1/1</span>"]),
@@ -131,13 +139,7 @@ fn the_pages_show_every_station_and_only_look() {
     let browser = serving.here();
     let stations = text(&browser, "/");
     assert!(stations.contains("station 7") && stations.contains("station 8"), "{stations}");
-    assert!(stations.contains("CAM-T intake 1") && !stations.contains("not heard from"), "{stations}");
-    // In all, 100 s and 121 s.
-    for (ms, is_away) in [(100_000, false), (21_000, true)] {
-        let silent = format!("UPDATE station SET seen_ms = seen_ms - {ms} WHERE name = 'station 8'");
-        server.change(&silent);
-        assert_eq!(text(&browser, "/").contains("not heard from"), is_away, "{ms}");
-    }
+    assert!(stations.contains("CAM-T intake 1") && !stations.contains("○ not heard from"), "{stations}");
     let listed = text(&browser, "/history");
     assert!(listed.contains("S1") && listed.contains("station 7") && !listed.contains("S6"), "{listed}");
     let failed =
@@ -159,6 +161,26 @@ fn the_pages_show_every_station_and_only_look() {
     let waive = browser.post(&format!("/runs/{failed}/waive"), &[("reason", "because")]).send();
     assert!([404, 405].contains(&waive.status), "{waive:?}");
     assert_eq!(server.rows("SELECT count(*) FROM waiver"), [["1"]]);
+}
+
+#[test]
+fn stations_that_are_silent_are_counted_and_come_first() {
+    let server = Server::prepared();
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    for (name, digit) in [("station 7", 7), ("station 8", 8)] {
+        plant.see(&introduction(name, format!("018f0000-0000-7000-8000-00000000000{digit}"))).unwrap();
+    }
+    let (_folder, serving) = served(&server);
+    // In all, 100 s and 121 s.
+    for (ms, is_away) in [(100_000, false), (21_000, true)] {
+        let silent = format!("UPDATE station SET seen_ms = seen_ms - {ms} WHERE name = 'station 8'");
+        server.change(&silent);
+        let page = text(&serving.here(), "/");
+        let counted = format!("Stations not heard from: {} of 2.", u8::from(is_away));
+        assert!(page.contains(&counted) && page.contains("○ not heard from") == is_away, "{ms}: {page}");
+        let [seven, eight] = ["7", "8"].map(|name| page.find(&format!("<b>station {name}</b>")).unwrap());
+        assert_eq!(eight < seven, is_away, "{page}");
+    }
 }
 
 #[test]
