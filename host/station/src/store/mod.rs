@@ -57,8 +57,7 @@ pub use plant::{
     PlantLink, SharedBoard, Told, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
 };
 pub(crate) use plant::{
-    JobsInState, KeptRun, LEASE_MS, SILENT_MS, counted_jobs, dead_jobs, open_jobs, publications, seen_units,
-    waiters,
+    JobsInState, KeptRun, LEASE_MS, SILENT_MS, counted_jobs, open_jobs, publications, seen_units, waiters,
 };
 pub(crate) use reason::MOST_REASON;
 pub use reason::{Reason, ReasonError};

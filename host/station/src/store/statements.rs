@@ -212,7 +212,6 @@ statements! {
     pub(super) RETRY_JOB = "plant/retry-job.sql";
     pub(super) JOBS = "plant/jobs.sql";
     pub(super) OPEN_JOBS = "plant/open-jobs.sql";
-    pub(super) DEAD_JOBS = "plant/dead-jobs.sql";
     pub(super) COUNTED_JOBS = "plant/counted-jobs.sql";
     pub(super) SEEN_UNITS = "plant/seen-units.sql";
     pub(super) ADD_BUNDLE = "plant/add-bundle.sql";

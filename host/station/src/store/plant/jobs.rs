@@ -353,15 +353,6 @@ pub(crate) fn open_jobs(of: &Snapshot) -> Result<Vec<JobsInState>, StoreError> {
     })
 }
 
-/// How many jobs wait for a person. This reads every job.
-///
-/// # Errors
-/// [`StoreError`] when the plant cannot be read.
-pub(crate) fn dead_jobs(of: &Snapshot) -> Result<u32, StoreError> {
-    let counted = of.rows("to count its jobs", sql::DEAD_JOBS, &[], |row| row.get::<u32>(0))?;
-    Ok(counted.into_iter().sum())
-}
-
 /// How many jobs are in each state; a state without jobs is left out. This reads every job.
 ///
 /// # Errors

@@ -17,7 +17,7 @@ pub use address::{PlantAddress, PlantAddressError};
 pub(crate) use boards::{LEASE_MS, waiters};
 pub use boards::{Lease, SharedBoard, Turn, Waiter, Waiting, boards};
 pub use jobs::{Claim, Job, JobState, NewJob, Wanted, Worker, jobs};
-pub(crate) use jobs::{JobsInState, counted_jobs, dead_jobs, open_jobs, seen_units};
+pub(crate) use jobs::{JobsInState, counted_jobs, open_jobs, seen_units};
 pub(crate) use kept::KeptRun;
 pub use link::PlantLink;
 pub(crate) use plans::publications;

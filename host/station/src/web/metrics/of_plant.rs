@@ -7,7 +7,9 @@ use super::{counted, turns};
 use crate::history::counts::{Cell, Count};
 use crate::history::mismatch::mismatches;
 use crate::history::stations::{Station, stations};
-use crate::store::{JobState, JobsInState, SharedBoard, boards, dead_jobs, open_jobs};
+use crate::store::{
+    JobState, JobsInState, SharedBoard, Snapshot, StoreError, boards, counted_jobs, open_jobs,
+};
 use crate::web::state::App;
 use crate::web::visit::Visit;
 
@@ -61,6 +63,12 @@ struct Shared {
     open: Vec<JobsInState>,
     dead: u32,
     boards: Vec<SharedBoard>,
+}
+
+/// How many jobs wait for a person.
+fn dead_jobs(now: &Snapshot) -> Result<u32, StoreError> {
+    let dead = counted_jobs(now)?.into_iter().find(|&(state, _)| state == JobState::Dead);
+    Ok(dead.map_or(0, |(_, jobs)| jobs))
 }
 
 /// Writes all figures. They say so if the plant is away.
