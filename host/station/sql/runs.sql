@@ -2,7 +2,7 @@
 SELECT run.id, run.started_ms, run.ended_ms, unit.product, unit.serial, plan.name, plan.version, run.station, run.lane,
   run.operator_id, run.verdict, run.cause, run.headline, run.nth,
   EXISTS (SELECT 1 FROM waiver WHERE waiver.run_id = run.id), run.record_sha256,
-  run.board_kind
+  run.board_kind, run.exit_code
 FROM run
 -- A left join keeps the engines from beginning with a table other than the runs.
 LEFT JOIN unit ON unit.id = run.unit_id

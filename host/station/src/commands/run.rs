@@ -260,7 +260,9 @@ fn text(saved: &Saved, plan: &Plan) -> String {
     if let Some(identity) = identity {
         lines.push(format!("board     {}", identity.detail));
     }
-    lines.extend(record.not_exercised().iter().map(|of_step| format!("untested  {}", in_one_line(of_step))));
+    lines.extend(
+        record.not_exercised().iter().map(|(step, parts)| format!("untested  {}", in_one_line(step, parts))),
+    );
     if record.marginal {
         lines.push("marginal  a step needed more than one try".to_owned());
     }

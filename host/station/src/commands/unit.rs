@@ -1,7 +1,6 @@
 //! `halfrow-station unit`
 
 use clap::Args;
-use halfrow::Verdict;
 use halfrow::words::plain_lines;
 
 use super::Failure;
@@ -9,9 +8,9 @@ use super::history::verdict;
 use super::looking::{Results, either, time};
 use crate::exit::Exit;
 use crate::history::mismatch::{Bound, Mismatch};
-use crate::history::unit::{Binding, Unit, UnitRun, units};
+use crate::history::unit::{Binding, StepUntested, Unit, UnitRun, units};
 use crate::record::in_one_line;
-use crate::store::{Rebinding, Removed, Snapshot};
+use crate::store::{Rebinding, Removed};
 
 /// Show all that is known of the units of a serial number
 #[derive(Debug, Args)]
@@ -34,25 +33,28 @@ pub(super) struct NoSuchUnit {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let snapshot = arguments.results.snapshot()?;
-    let units = units(&snapshot, &arguments.serial)?;
+    let mut units = units(&snapshot, &arguments.serial)?;
     if units.is_empty() {
         return Err(Failure::call(NoSuchUnit { serial: arguments.serial.clone() }));
     }
+    for run in units.iter_mut().flat_map(|unit| &mut unit.runs) {
+        run.read_record(&snapshot);
+    }
     let (rebindings, removed) = (snapshot.rebindings()?, snapshot.pruned()?);
     either(&units, arguments.json, |units| {
-        let lines = |unit| unit_lines(unit, &snapshot, &rebindings, &removed);
+        let lines = |unit| unit_lines(unit, &rebindings, &removed);
         plain_lines(units.iter().flat_map(lines))
     })
 }
 
-fn unit_lines(unit: &Unit, of: &Snapshot, rebindings: &[Rebinding], removed: &Removed) -> Vec<String> {
+fn unit_lines(unit: &Unit, rebindings: &[Rebinding], removed: &Removed) -> Vec<String> {
     let Unit { product, serial, runs, bindings, .. } = unit;
     let mut lines = vec![format!("{serial}, {product}, first seen {}", time(unit.first_seen_ms))];
     lines.extend(bindings.iter().map(binding));
     lines.extend(rebindings.iter().filter_map(|change| rebound(unit, change)));
     lines.extend(unit.mismatches.iter().map(mismatch));
     for run in runs {
-        lines.extend(run_lines(run, bindings, &not_exercised(run, of)));
+        lines.extend(run_lines(run, bindings));
         lines.extend(kept_lines(run, removed));
     }
     lines
@@ -91,16 +93,7 @@ fn mismatch(one: &Mismatch) -> String {
     )
 }
 
-/// What a PASS did not test, a line for each step; nothing where its record is not here.
-fn not_exercised(run: &UnitRun, of: &Snapshot) -> Vec<String> {
-    let line = &run.line;
-    let hash = line.record_sha256.as_ref().filter(|_| line.verdict == Some(Verdict::Pass));
-    let record = hash.and_then(|hash| of.record(hash).ok());
-    let parts = record.as_ref().map(|(record, _)| record.not_exercised()).unwrap_or_default();
-    parts.iter().map(in_one_line).collect()
-}
-
-fn run_lines(run: &UnitRun, bindings: &[Binding], not_exercised: &[String]) -> Vec<String> {
+fn run_lines(run: &UnitRun, bindings: &[Binding]) -> Vec<String> {
     let line = &run.line;
     let verdict = verdict(line);
     let headline = line.headline.as_deref().unwrap_or("it is under way");
@@ -119,7 +112,8 @@ fn run_lines(run: &UnitRun, bindings: &[Binding], not_exercised: &[String]) -> V
         let again = if step.attempt > 1 { format!(", try {}", step.attempt) } else { String::new() };
         format!("  step      {}{again} {}: {}", step.name, step.outcome, step.detail)
     }));
-    lines.extend(not_exercised.iter().map(|parts| format!("  untested  {parts}")));
+    let untested = |of: &StepUntested| format!("  untested  {}", in_one_line(&of.step, &of.parts));
+    lines.extend(run.not_exercised.iter().map(untested));
     lines.extend(run.suspects.iter().map(|suspect| {
         let share = suspect.share().map(|share| format!(": explains {share:.0} %")).unwrap_or_default();
         format!("  suspect   {}{share}", suspect.named())

@@ -49,7 +49,9 @@ fn properties(record: &Record) -> Vec<(&'static str, String)> {
     if !run.variant.is_empty() {
         list.push(("variant", run.variant.clone()));
     }
-    list.extend(record.not_exercised().iter().map(|of_step| ("not_exercised", in_one_line(of_step))));
+    list.extend(
+        record.not_exercised().iter().map(|(step, parts)| ("not_exercised", in_one_line(step, parts))),
+    );
     if let Some(board) = &record.board {
         list.push(("board.kind", board.kind.clone()));
         list.push(("board.build", board.build.clone()));

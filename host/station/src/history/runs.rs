@@ -108,10 +108,12 @@ pub struct RunLine {
     pub record_sha256: Option<String>,
     /// `mock`, `sim`, `replay` or `hardware`; `None` also if the board did not say what it is.
     pub board_kind: Option<String>,
+    /// The exit code.
+    pub exit_code: Option<u8>,
 }
 
 impl RunLine {
-    /// From the first seventeen columns.
+    /// From the first eighteen columns.
     pub(super) fn of(row: &Found<'_>) -> Result<Self, DatabaseError> {
         Ok(Self {
             id: row.get(0)?,
@@ -131,6 +133,7 @@ impl RunLine {
             waived: row.get(14)?,
             record_sha256: row.get(15)?,
             board_kind: row.get(16)?,
+            exit_code: row.get(17)?,
         })
     }
 

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::mismatch::{Mismatch, mismatches};
 use super::runs::RunLine;
 use crate::record::Attachment;
+use crate::said::Said;
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, Waiver, statements, values};
 
 /// A unit with everything that happened to it.
@@ -57,8 +58,6 @@ pub struct UnitRun {
     pub device: Option<String>,
     /// The build's commit, in hexadecimal.
     pub build: Option<String>,
-    /// The exit code.
-    pub exit_code: Option<u8>,
     /// Every try of every step, in order.
     pub steps: Vec<StepTry>,
     /// The parts that are suspected, the likeliest first.
@@ -67,6 +66,27 @@ pub struct UnitRun {
     pub attachments: Vec<Attachment>,
     /// The waiver of its FAIL.
     pub waivers: Vec<Waiver>,
+    /// What a PASS did not test, by step; empty until [`Self::read_record`].
+    pub not_exercised: Vec<StepUntested>,
+}
+
+impl UnitRun {
+    /// Reads what no table has; it stays empty where the record is not here.
+    pub(crate) fn read_record(&mut self, of: &Snapshot) {
+        let record = self.line.record_sha256.as_ref().and_then(|hash| of.record(hash).ok());
+        let Some((record, _)) = record else { return };
+        let untested = |(step, parts): (&str, Vec<Said>)| StepUntested { step: step.to_owned(), parts };
+        self.not_exercised = record.not_exercised().into_iter().map(untested).collect();
+    }
+}
+
+/// What a step of a PASS did not test.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct StepUntested {
+    /// The step's name.
+    pub step: String,
+    /// The parts.
+    pub parts: Vec<Said>,
 }
 
 /// A try of a step.
@@ -194,15 +214,15 @@ fn by_run<T>(
 fn run(row: &Found<'_>) -> Result<UnitRun, DatabaseError> {
     Ok(UnitRun {
         line: RunLine::of(row)?,
-        variant: row.get(17)?,
-        target: row.get(18)?,
-        device: row.get(19)?,
-        build: row.get(20)?,
-        exit_code: row.get(21)?,
+        variant: row.get(18)?,
+        target: row.get(19)?,
+        device: row.get(20)?,
+        build: row.get(21)?,
         steps: Vec::new(),
         suspects: Vec::new(),
         attachments: Vec::new(),
         waivers: Vec::new(),
+        not_exercised: Vec::new(),
     })
 }
 

@@ -28,7 +28,7 @@ fn part(of: &Value) -> Option<Said> {
 }
 
 /// The parts of a step in one line, with the step's name.
-pub(crate) fn in_one_line((step, parts): &(&str, Vec<Said>)) -> String {
+pub(crate) fn in_one_line(step: &str, parts: &[Said]) -> String {
     let words: Vec<_> = parts.iter().map(|part| part.message.as_str()).collect();
     format!("{step}: {}", words.join("; "))
 }

@@ -3,8 +3,9 @@
 use std::process::Command;
 
 use halfrow_station::history::runs::{Filter, page};
+use serde_json::Value;
 
-use super::commands::did;
+use super::commands::{did, misread};
 use super::made::Made;
 use super::served::Served;
 use crate::common::{self, PLAN, program};
@@ -38,6 +39,12 @@ fn a_pass_says_what_was_not_tested_wherever_it_is_told() {
     assert_eq!(code, 0, "{complained}");
     let line = said.lines().find(|line| line.starts_with("  untested  verify: "));
     assert!(line.is_some_and(|line| line.contains(untested)), "{said}");
+    let units: Value = serde_json::from_str(&did(&made, &["unit", "CAT00001", "--json"]).1).unwrap();
+    assert_eq!(misread("unit", &units), Vec::<String>::new(), "schema/results-1.json");
+    let by_step = &units[0]["runs"][0]["not_exercised"];
+    let parts = by_step[0]["parts"].as_array().unwrap();
+    let is_told = parts.iter().any(|part| part["message"].as_str().unwrap().contains(untested));
+    assert!(by_step[0]["step"] == "verify" && is_told, "{by_step}");
     let run = only_run(&made);
     let served = Served::of(made);
     let junit = served.get(&format!("/runs/{run}/export/junit")).text();
@@ -55,13 +62,14 @@ fn a_pass_says_what_was_not_tested_wherever_it_is_told() {
 
 /// Whoever counts runs by either must be able to leave out the mock.
 #[test]
-fn what_kind_of_board_it_was_is_told_of_a_run_wherever_it_is_listed() {
+fn what_kind_of_board_it_was_and_its_exit_code_are_told_of_a_run_wherever_it_is_listed() {
     let made = judged(PLAN, "mock");
     for (arguments, run) in
         [(&["history", "--json"][..], "/runs/0"), (&["unit", "CAT00001", "--json"], "/0/runs/0")]
     {
-        let said: serde_json::Value = serde_json::from_str(&did(&made, arguments).1).unwrap();
-        assert_eq!(said.pointer(run).unwrap()["board_kind"], "mock", "{said:#}");
+        let said: Value = serde_json::from_str(&did(&made, arguments).1).unwrap();
+        let run = said.pointer(run).unwrap();
+        assert_eq!((&run["board_kind"], &run["exit_code"]), (&"mock".into(), &0.into()), "{run:#}");
     }
 }
 
