@@ -66,7 +66,7 @@ IN_THE_DOCUMENT_ALONE = {
     "Identity": {"least_blanking", "table_banks", "row_banks_in", "row_banks_out", "bursts", "entered", "grids"},
     "Suspect": {"account"},
     "Comparison": {"extremes", "bits", "by_row", "by_column"},
-    "Frame": {"timing", "variation", "first_rows", "missing"},
+    "Frame": {"timing", "variation", "first_rows", "missing", "tables"},
     "Link": {"late", "strays", "line_errors", "retry_limit", "reconnections"},
     "TablesUsed": {"tables_crc32", "kernel_crc32"},
     "Facts": {"operator"},

@@ -29,6 +29,18 @@ fn a_report_reads_back_equal() {
     }
 }
 
+/// As `verify --list` calls them: all but the first generation belong to the tables to judge with.
+#[test]
+fn a_frame_says_which_tables_made_it() {
+    let mut report = made::pass();
+    for (generation, tables) in [(1, "decoy"), (2, "judged"), (3, "judged")] {
+        report.frames[0].generation = generation;
+        let frame = &json(&report)["frames"][0];
+        assert_eq!((&frame["generation"], &frame["tables"]), (&generation.into(), &tables.into()));
+        assert_same_when_read_back(&report);
+    }
+}
+
 #[test]
 fn every_finding_and_every_suspect_reads_back_equal_with_a_sentence_of_its_own() {
     let mut said = BTreeSet::new();

@@ -21,6 +21,11 @@ fn case<'a>(suite: &'a TestSuite, class: &str, name: &str) -> &'a TestCase {
     suite.test_cases.iter().find(wanted).unwrap()
 }
 
+fn property<'a>(suite: &'a TestSuite, name: &str) -> Option<&'a str> {
+    let found = suite.properties.iter().find(|property| property.name.as_str() == name);
+    found.map(|property| property.value.as_str())
+}
+
 fn kind(case: &TestCase) -> Option<NonSuccessKind> {
     match &case.status {
         TestCaseStatus::NonSuccess { kind, .. } => Some(*kind),
@@ -47,17 +52,26 @@ fn a_frame_through_the_decoy_s_tables_is_named_so() {
 #[test]
 fn the_suite_says_which_kind_of_board_it_was() {
     let suite = suite(&made::pass());
-    let value = |name| {
-        suite
-            .properties
-            .iter()
-            .find(|property| property.name.as_str() == name)
-            .map(|found| found.value.as_str())
-    };
+    let value = |name| property(&suite, name);
     assert_eq!(value("board.kind"), Some("mock"));
     assert_eq!(value("board.target"), Some("mock,fault=flip"));
     assert_eq!(value("cause"), Some("equal"));
     assert_eq!(value("not_exercised"), Some("not exercised: samples of 8 or 10 bits"));
+}
+
+/// Zeros on the wire are no number (protocol/WIRE.md).
+#[test]
+fn the_suite_has_the_code_and_a_number_only_of_a_board_that_has_one() {
+    let mut report = made::pass();
+    let with = suite(&report);
+    for (name, value) in
+        [("code", "all-right"), ("board.serial", "000000000000002a"), ("board.device", "000000000000002a")]
+    {
+        assert_eq!(property(&with, name), Some(value), "{name}");
+    }
+    report.board.identity.as_mut().unwrap().serial = "0".repeat(16);
+    let without = suite(&report);
+    assert_eq!((property(&without, "board.serial"), property(&without, "board.device")), (None, None));
 }
 
 #[test]

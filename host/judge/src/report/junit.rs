@@ -60,6 +60,7 @@ fn properties(report: &Report) -> Vec<(&'static str, String)> {
     let mut list = vec![
         ("verdict", report.verdict().to_string()),
         ("cause", report.cause.to_string()),
+        ("code", report.finding.code()),
         ("board.kind", report.board.kind.to_string()),
         ("board.target", report.board.target.clone()),
         ("halfrow.version", report.run.version.clone()),
@@ -71,7 +72,10 @@ fn properties(report: &Report) -> Vec<(&'static str, String)> {
     list.extend(wording::coverage(report).map(|share| ("coverage", share)));
     if let Some(identity) = &report.board.identity {
         list.push(("board.name", identity.name.clone()));
-        list.push(("board.serial", identity.serial.clone()));
+        if identity.serial.bytes().any(|digit| digit != b'0') {
+            // A station's name for it, whose `serial` is the unit's.
+            list.extend(["board.serial", "board.device"].map(|name| (name, identity.serial.clone())));
+        }
         list.push(("board.build", identity.build.clone()));
     }
     list

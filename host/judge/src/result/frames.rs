@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{MissingRows, as_text};
 use crate::compare::Comparison;
+use crate::run::DECOY;
 
 /// The comparisons of several frames, added up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +69,26 @@ pub struct FrameReport {
     pub seconds: f64,
 }
 
+/// A frame in JSON, with what its generation means.
+#[derive(Serialize)]
+pub(super) struct WithTables<'a> {
+    #[serde(flatten)]
+    frame: &'a FrameReport,
+    tables: &'static str,
+}
+
+impl<'a> From<&'a FrameReport> for WithTables<'a> {
+    fn from(frame: &'a FrameReport) -> Self {
+        Self { frame, tables: if frame.is_decoy() { "decoy" } else { "judged" } }
+    }
+}
+
 impl FrameReport {
+    /// Whether it was made with the decoy tables, and not with those to judge with.
+    pub(crate) const fn is_decoy(&self) -> bool {
+        self.generation == DECOY
+    }
+
     /// The rows that were streamed. Only a frame of which all came back may be without counts by row.
     #[must_use]
     pub fn height(&self) -> usize {

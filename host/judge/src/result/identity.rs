@@ -11,7 +11,7 @@ use crate::words::{board_name, count};
 pub struct Identity {
     /// Its name.
     pub name: String,
-    /// Its serial number, in hexadecimal.
+    /// Its serial number, in hexadecimal; zeros if it has none.
     pub serial: String,
     /// The start of the commit that it was built from, in hexadecimal.
     pub build: String,

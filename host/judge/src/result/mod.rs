@@ -42,6 +42,7 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 use crate::board::{Capabilities, Welcome};
 use crate::frames::street::EdgeDeviation;
 use crate::verdict::{Cause, Verdict};
+use frames::WithTables;
 use not_exercised::InWords;
 
 pub use crate::target::BoardKind;
@@ -183,7 +184,7 @@ struct Rest<'a> {
     finding: &'a Finding,
     suspects: &'a [Suspect],
     checks: &'a [Check],
-    frames: &'a [FrameReport],
+    frames: Vec<WithTables<'a>>,
     not_exercised: Vec<InWords<'a>>,
     latency: &'a Option<LatencyReport>,
     street: &'a Option<StreetReport>,
@@ -210,7 +211,7 @@ impl<'a> From<&'a Report> for Rest<'a> {
             finding: &report.finding,
             suspects: &report.suspects,
             checks: &report.checks,
-            frames: &report.frames,
+            frames: report.frames.iter().map(WithTables::from).collect(),
             not_exercised: report.not_exercised.iter().map(InWords::from).collect(),
             latency: &report.latency,
             street: &report.street,

@@ -13,7 +13,6 @@ use crate::result::{
     LinkReport, NotExercised, Outcome, Reconnection, Report, SoakDifference, SoakLength, SoakReport,
     StreetReport, Suspect,
 };
-use crate::run::DECOY;
 use crate::verdict::{Cause, Verdict};
 use crate::words::{board_name, bytes, count, grouped, percent, plain, span, verb};
 
@@ -116,7 +115,7 @@ pub fn says(headline: &str, remedy: &str) -> bool {
 #[must_use]
 pub fn frame_name(frame: &FrameReport) -> Cow<'_, str> {
     let mut name = plain(&frame.name);
-    if frame.generation == DECOY {
+    if frame.is_decoy() {
         name = format!("{name}, decoy tables").into();
     }
     if let Some(variation) = frame.variation {
