@@ -94,8 +94,10 @@ fn a_late_request_is_no_fault_of_a_board_that_missed_one_that_asks() {
     no_sound_board_fails(&[&harmless[..], &[after_no_stream, after_a_stream]].concat());
 }
 
-/// Old greetings of this host that arrive late. They open session after session, until one has the number of the session that was
-/// open.
+/// How many sessions are opened until one has the number of the session that was open.
+const SESSIONS: usize = 255;
+
+/// Old greetings of this host that arrive late.
 fn greetings() -> impl Iterator<Item = Passing> {
     let passing = |request: &Request<'_>| {
         let mut payload = Vec::new();
@@ -103,15 +105,14 @@ fn greetings() -> impl Iterator<Item = Passing> {
         let header = Header { kind: request.kind().code(), sequence: 0x4242, ..Header::default() };
         Passing { header, payload }
     };
-    (1..=255).map(move |nonce| {
+    (1..=SESSIONS as u32).map(move |nonce| {
         let hello = Hello { nonce, host: HOST, version_min: 1, version_max: 1, take_over: false };
         passing(&Request::Hello(hello))
     })
 }
 
-/// The report on a sound board that loses its power before the packet `before`; then old greetings open a session of the same
-/// number.
-fn opened_meanwhile(before: Numbered) -> Report {
+/// The report on a sound board that loses its power before the packet `before`; then so many old greetings open sessions.
+fn opened_meanwhile(before: Numbered, sessions: usize) -> Report {
     let mut numbers = Numbers::default();
     let mut awaited = None;
     judge(&System::TINY, move |toward, packet| {
@@ -131,7 +132,7 @@ fn opened_meanwhile(before: Numbered) -> Report {
         Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 }).write(&mut reset);
         let header = Header { kind: Kind::Reset.code(), sequence: 0x4242, ..packet.header };
         let forgets = Passing { header, payload: reset };
-        [forgets].into_iter().chain(greetings()).chain([packet]).collect()
+        [forgets].into_iter().chain(greetings().take(sessions)).chain([packet]).collect()
     })
 }
 
@@ -139,9 +140,22 @@ fn opened_meanwhile(before: Numbered) -> Report {
 #[test]
 fn a_board_that_was_switched_on_and_opened_meanwhile_is_no_fail() {
     let places = [(Kind::TableCrc, 5), (Kind::Commit, 9)];
-    let reports = parallel::map(&places, |&before| opened_meanwhile(before));
+    let reports = parallel::map(&places, |&before| opened_meanwhile(before, SESSIONS));
     for (before, report) in places.iter().zip(&reports) {
         let is_known = matches!(report.finding, Finding::RightInAnotherSession { .. });
         assert!(is_known, "{before:?}: {}", report.headline());
+    }
+}
+
+/// WIRE.md, 2.2: the board numbers the sessions, so a greeting in between shows; what the rules of sessions find then is tried again.
+#[test]
+fn a_board_that_was_switched_on_while_its_sessions_were_judged_passes_and_that_is_told() {
+    // Before the greeting that is repeated, and the four that open the next session.
+    let places = [4, 7, 8, 9, 10].map(|number| (Kind::Hello, number));
+    let reports = parallel::map(&places, |&before| opened_meanwhile(before, 1));
+    for (before, report) in places.iter().zip(&reports) {
+        let headline = report.headline();
+        assert_eq!(report.verdict(), Verdict::Pass, "{before:?}: {headline}");
+        assert!(headline.ends_with("; the board went away and came back 1 time"), "{before:?}: {headline}");
     }
 }

@@ -29,8 +29,6 @@ mod wide;
 mod windows;
 mod without_effect;
 
-use std::mem;
-
 use halfrow_model::{Geometry, Phase};
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
@@ -116,6 +114,8 @@ struct Rules<'a, 'run> {
     given: Given,
     /// The frame of a commit that is pending, while what the board answers depends on it.
     pending: Option<u16>,
+    /// Whether a session ended that this host did not end, which was no reason to fail.
+    has_lost_session: bool,
 }
 
 impl<'a, 'run> Rules<'a, 'run> {
@@ -133,6 +133,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             height: 0,
             given: Given::default(),
             pending: None,
+            has_lost_session: false,
         })
     }
 
@@ -140,6 +141,10 @@ impl<'a, 'run> Rules<'a, 'run> {
     fn all(mut self) -> Result<usize, End> {
         match self.each() {
             Err(end) if end.is_not_ready() => Err(self.reset_too_far().unwrap_or(end)),
+            Ok(()) if self.has_lost_session => {
+                self.run.sessions.note_lost();
+                Ok(self.right)
+            }
             tried => tried.map(|()| self.right),
         }
     }
@@ -325,7 +330,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     }
 
     fn stream(&mut self, compared: &mut Compared) -> Result<(), BoardError> {
-        let given = mem::take(&mut self.given);
+        let given = std::mem::take(&mut self.given);
         self.run.board.stream_given(given, compared)
     }
 }

@@ -65,6 +65,7 @@ impl Rules<'_, '_> {
             if !has_failed || !self.has_lost_power() {
                 return tried;
             }
+            self.has_lost_session = true;
         }
         scenario(self)
     }
@@ -165,6 +166,7 @@ impl Rules<'_, '_> {
             let own = rules.run.board.session();
             let again = rules.run.board.greet_again().during(CheckName::Rules)?;
             if again.session != own {
+                rules.has_lost_session = true;
                 // The window is not known until the board has answered in the new session.
                 rules.status()?;
                 return Err(another_session(Rule::NewSession, own, again.session));
@@ -308,7 +310,11 @@ impl Rules<'_, '_> {
     }
 
     fn greet(&mut self) -> Result<(), BoardError> {
-        self.greet_by(Board::open_another_session)
+        let right = next(self.run.board.session());
+        self.greet_by(Board::open_another_session)?;
+        // Or the board numbers its sessions wrong, which fails.
+        self.has_lost_session |= self.run.board.session() != right;
+        Ok(())
     }
 
     fn greet_by(&mut self, open: fn(&mut Board, u32) -> Result<(), BoardError>) -> Result<(), BoardError> {

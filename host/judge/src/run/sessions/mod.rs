@@ -184,6 +184,12 @@ impl Sessions {
         })
     }
 
+    /// Notes that the board lost its session though its link stayed, and was greeted again at once.
+    pub(crate) fn note_lost(&mut self) {
+        let reason = Problem::of(&BoardError::SessionLost { silent: Duration::ZERO });
+        self.report.reconnections.push(Reconnection { reason, seconds_away: 0.0, kept_tables: None });
+    }
+
     /// Drops what the board has of an earlier session, and notes whether a board that came back still had its tables.
     pub(crate) fn start_afresh(&mut self, board: &mut Board) -> Result<(), BoardError> {
         let had_tables = board.start_afresh()?;
