@@ -107,13 +107,6 @@ pub(super) struct NoWord {
     pub(super) word: String,
 }
 
-impl Arguments {
-    /// Whether it was asked for a document.
-    pub(super) const fn is_documented(&self) -> bool {
-        matches!(self.what, Action::List { json: true, .. })
-    }
-}
-
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
     let settings = settings.load_without_lanes()?;
     let address = plant(&settings)?.address()?;

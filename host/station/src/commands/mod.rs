@@ -40,7 +40,7 @@ mod yields;
 
 use clap::{ArgAction, Parser, Subcommand};
 
-use document::IN_LINES;
+use document::Asked;
 pub use document::failure;
 use halfrow::result::Problem;
 use halfrow::words::plain_lines;
@@ -60,6 +60,8 @@ use crate::web::{TokenError, UserError};
 #[derive(Debug, Parser)]
 #[command(name = "halfrow-station", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
 pub struct Cli {
+    #[command(flatten)]
+    asked: Asked,
     /// Log what happens to stderr; twice for every packet that is late or damaged. With --version: tell
     /// what the program was built from
     #[arg(short, long, global = true, action = ArgAction::Count)]
@@ -154,29 +156,8 @@ impl Cli {
 
     /// The command's name, if it was asked for a document.
     #[must_use]
-    pub fn documented(&self) -> Option<&'static str> {
-        match &self.command {
-            Command::Run(arguments) => arguments.json.then_some("run"),
-            Command::Check(arguments) => arguments.json.then_some("check"),
-            Command::Plant(arguments) => arguments.is_documented().then_some("check"),
-            Command::Prune(arguments) => arguments.json.then_some("prune"),
-            Command::Codes(arguments) => arguments.json.then_some("codes"),
-            Command::History(arguments) => arguments.json.then_some("history"),
-            Command::Unit(arguments) => arguments.json.then_some("unit"),
-            Command::Yield(arguments) => arguments.json.then_some("yield"),
-            Command::Pareto(arguments) => arguments.json.then_some("pareto"),
-            Command::Plan(arguments) => arguments.is_documented().then_some("plan"),
-            Command::Outbox(arguments) => arguments.is_documented().then_some("outbox"),
-            Command::Work(arguments) => arguments.json.then_some(IN_LINES),
-            Command::Job(arguments) => arguments.is_documented().then_some("job"),
-            Command::Board(arguments) => arguments.is_documented().then_some("board"),
-            // They print no JSON.
-            Command::Waive(_) | Command::Export(_) | Command::Evidence(_) | Command::Backup(_) => None,
-            Command::Restore(_) | Command::Rebind(_) | Command::Lanes(_) | Command::LangCheck(_) => None,
-            Command::Commands(_) | Command::Schema(_) | Command::Serve(_) | Command::Demo(_) => None,
-            Command::User(_) | Command::Token(_) | Command::Completions(_) | Command::Manual(_) => None,
-            Command::Lane(_) => None,
-        }
+    pub fn documented(&self) -> Option<&str> {
+        self.asked.command.as_deref()
     }
 
     /// Runs the command.

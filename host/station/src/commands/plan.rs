@@ -42,13 +42,6 @@ enum Command {
     Fetch(SettingsFile),
 }
 
-impl Arguments {
-    /// Whether it was asked for a document.
-    pub(super) const fn is_documented(&self) -> bool {
-        matches!(self.command, Command::Published(publish::List { json: true, .. }))
-    }
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     match &arguments.command {
         Command::Check { file, serial } => {

@@ -60,13 +60,6 @@ enum Action {
     Serve,
 }
 
-impl Arguments {
-    /// Whether a document was asked for.
-    pub(super) const fn is_documented(&self) -> bool {
-        matches!(self.what, Action::Check { json: true })
-    }
-}
-
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
     // The plans are not loaded, because those of the plant can be fetched only once it has tables.
     let address = || address(&published(settings)?);

@@ -5,6 +5,8 @@ use std::fs;
 use std::process::Command;
 use std::time::{Duration, SystemTime};
 
+use clap::CommandFactory as _;
+use halfrow_station::commands::Cli;
 use serde_json::Value;
 
 use crate::common::{Did, PLAN, did, program};
@@ -116,6 +118,45 @@ fn a_list_that_cannot_be_made_is_a_document_with_a_code() {
         assert_eq!(did.said.lines().count() == 1, call == ["work"], "{}", did.said);
         let without = crate::common::did(&[call, &["--settings", "/nowhere/station.toml"]].concat());
         assert_eq!((without.code, without.said.as_str()), (Some(2), ""), "{call:?}");
+    }
+}
+
+/// The calls of `command` that ask for a document, each with its path; none of their files can be there.
+fn asking<'a>(path: &[&'a str], command: &'a clap::Command) -> Vec<(Vec<&'a str>, Vec<String>)> {
+    let within = command.get_subcommands().flat_map(|it| asking(&[path, &[it.get_name()]].concat(), it));
+    let mut calls: Vec<_> = within.collect();
+    let mut call: Vec<_> = path.iter().map(|&word| word.to_owned()).collect();
+    for argument in command.get_arguments() {
+        match argument.get_long() {
+            Some(flag @ ("data" | "plan" | "settings")) => call.push(format!("--{flag}=/dev/null/nowhere")),
+            // In place of two options.
+            Some("mock") => call.push("--mock".to_owned()),
+            Some("json") => calls.push((path.to_vec(), vec!["--json".to_owned()])),
+            Some(flag) if argument.is_required_set() => call.push(format!("--{flag}=S1")),
+            None if argument.is_required_set() => call.push("S1".to_owned()),
+            _ => {}
+        }
+    }
+    if let Some((_, own)) = calls.iter_mut().find(|(of, _)| of == path) {
+        own.splice(..0, call);
+    }
+    calls
+}
+
+#[test]
+fn every_command_that_can_be_asked_for_a_document_prints_one_when_it_fails() {
+    let mut program_itself = Cli::command();
+    // What a command takes for its subcommands is then theirs, too.
+    program_itself.build();
+    let calls = asking(&[], &program_itself);
+    assert!(calls.len() >= 14, "{calls:?}");
+    // The list of codes needs nothing that could be missing.
+    for (path, call) in calls.iter().filter(|(path, _)| path != &["codes"]) {
+        let call: Vec<_> = call.iter().map(String::as_str).collect();
+        let said = document(&did(&call));
+        let named = if path == &["plant", "check"] { "check" } else { path[0] };
+        assert_eq!((&said["command"], said["error"]["code"].is_string()), (&named.into(), true), "{call:?}");
+        assert_eq!(did(&call[..call.len() - 1]).said, "", "{call:?}");
     }
 }
 
