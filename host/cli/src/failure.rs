@@ -54,12 +54,6 @@ impl Failure {
         Self { option: Some(option), ..self }
     }
 
-    /// Its code, if `explain` has more to say about it.
-    #[must_use]
-    pub fn code(&self) -> Option<String> {
-        halfrow_program::codes::explained(codes::problem(self.exit, &self.error))
-    }
-
     /// Why, in words that name the flags of this program.
     #[must_use]
     pub fn problem(&self) -> Problem {

@@ -35,12 +35,9 @@ fn program() -> Exit {
     ended.unwrap_or_else(|failure| explain(&failure, cli.wants_json().then(|| cli.command_name())))
 }
 
-/// Says why there is no result: on stderr for people, and as JSON on stdout if the call asked for it.
+/// Says why there is no result, also as JSON if the call asked for it.
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
-    console::error(&failure.problem());
-    console::refer(failure.code().as_deref());
-    if let Some(command) = as_json_of {
-        console::tell(&failure.document(command));
-    }
+    let document = as_json_of.map(|command| failure.document(command));
+    console::explain(&failure.problem(), document.as_deref());
     failure.exit
 }

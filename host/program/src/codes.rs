@@ -60,9 +60,8 @@ pub fn problem(
 }
 
 /// The code of `problem`; none if the error has no type of its own, so that `explain` has nothing more to say.
-#[must_use]
-pub fn explained(problem: Problem) -> Option<String> {
-    Some(problem.code).filter(|code| !UNTYPED.contains(&code.as_str()))
+pub(crate) fn explained(problem: &Problem) -> Option<&str> {
+    Some(problem.code.as_str()).filter(|code| !UNTYPED.contains(code))
 }
 
 /// The code of a command line that cannot be read.

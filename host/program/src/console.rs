@@ -11,7 +11,10 @@ use std::io::{self, IsTerminal as _, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anstream::AutoStream;
+use halfrow::result::Problem;
 use halfrow::words::{is_unfit, plain};
+
+use crate::codes;
 
 /// The result could not be written to stdout.
 #[derive(Debug, thiserror::Error)]
@@ -79,10 +82,15 @@ pub fn error(what: &dyn Display) {
     diagnose(&format_args!("error: {what}"));
 }
 
-/// Says on stderr where the code of an error is explained, if it has one.
-pub fn refer(code: Option<&str>) {
-    if let Some(code) = code {
+/// Says why there is no result: on stderr for people, with where its code is explained, and as `document` on stdout where that was
+/// asked for.
+pub fn explain(problem: &Problem, document: Option<&str>) {
+    error(problem);
+    if let Some(code) = codes::explained(problem) {
         diagnose(&format_args!("see `halfrow explain {code}`"));
+    }
+    if let Some(document) = document {
+        tell(document);
     }
 }
 

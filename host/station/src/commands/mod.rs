@@ -139,12 +139,6 @@ impl Failure {
         let problem = crate::codes::problem(self.exit, &self.error);
         if self.is_refusal { problem.of_refusal(self.error.as_ref()) } else { problem }
     }
-
-    /// Its code, if `halfrow explain` has more to say about it.
-    #[must_use]
-    pub fn code(&self) -> Option<String> {
-        halfrow_program::codes::explained(self.problem())
-    }
 }
 
 impl Cli {
