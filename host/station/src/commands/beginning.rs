@@ -28,7 +28,7 @@ use crate::plan::PlanName;
 use crate::run::{self as runs, Recovered, Saved};
 use crate::said::Saying;
 use crate::settings::{PlanFile, PlantSettings, Settings};
-use crate::store::{Folder, Introduction, SharedStore, Store, Told};
+use crate::store::{Folder, Introduction, LastTold, SharedStore, Store};
 
 /// How often signals are checked for.
 const LOOK: Duration = Duration::from_millis(100);
@@ -201,7 +201,7 @@ pub(super) struct Sending {
 
 impl Sending {
     /// Begins to send what is in `store` to all sinks of these settings; `told` is what this program tells the plant of itself.
-    pub(super) fn begin(settings: &Settings, store: SharedStore, told: &Told) -> Result<Self, Failure> {
+    pub(super) fn begin(settings: &Settings, store: SharedStore, told: &LastTold) -> Result<Self, Failure> {
         let sinks = store.with(|store| sinks(settings, store, told))?;
         Self::to(sinks, store)
     }
@@ -229,7 +229,7 @@ impl Drop for Sending {
 pub(super) fn sinks(
     settings: &Settings,
     store: &mut Store,
-    told: &Told,
+    told: &LastTold,
 ) -> Result<Vec<Box<dyn Sink>>, Failure> {
     let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
     if let Some(plant) = &settings.plant {

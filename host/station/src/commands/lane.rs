@@ -13,7 +13,7 @@ use super::Failure;
 use crate::console;
 use crate::exit::Exit;
 use crate::lane::child::{Orders, carry_out, orders};
-use crate::lane::{Control, FILE_MIB, Job, Message};
+use crate::lane::{Control, FILE_MIB, LaneJob, Message};
 
 /// The program's name, which has the 15 letters that the system keeps.
 const PROGRAM: &str = "halfrow-station";
@@ -27,7 +27,7 @@ pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
     name();
     let mut line = String::new();
     io::stdin().lock().read_line(&mut line).map_err(Failure::error)?;
-    let job: Job = serde_json::from_str(&line).map_err(|error| {
+    let job: LaneJob = serde_json::from_str(&line).map_err(|error| {
         let why = anyhow::Error::from(error);
         Failure::call(why.context("the first line is no job; `halfrow-station run` starts lanes, not people"))
     })?;

@@ -14,7 +14,7 @@ use super::fetching::fetch_at_start;
 use crate::console;
 use crate::engine::{EngineEnded, News};
 use crate::exit::Exit;
-use crate::store::Told;
+use crate::store::LastTold;
 
 /// How often signals are checked for.
 const LOOK: Duration = Duration::from_millis(100);
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let signal = ready.signal.clone();
     let engine = ready.start()?;
     let news = engine.listen();
-    let sending = Sending::begin(&settings, engine.store(), &Told::default())?;
+    let sending = Sending::begin(&settings, engine.store(), &LastTold::default())?;
     let printer = thread::Builder::new().name("news".to_owned()).spawn(move || print(&news));
     let printer = printer.map_err(Failure::error)?;
     let scans = scans().map_err(Failure::error)?;

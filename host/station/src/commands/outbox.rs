@@ -12,7 +12,7 @@ use crate::console;
 use crate::exit::Exit;
 use crate::outbox::{Sink, all};
 use crate::settings::Settings;
-use crate::store::{DEAD_SHOWN, Dead, Folder, SharedStore, Snapshot, Store, Told, Unsent};
+use crate::store::{DEAD_SHOWN, Dead, Folder, LastTold, SharedStore, Snapshot, Store, Unsent};
 
 /// See what is still to be sent on, send it, or have it tried again
 #[derive(Debug, Args)]
@@ -144,7 +144,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
 
 /// Sends to every sink what it does not have yet, and prints what is left.
 fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
-    let mut sinks = sinks(settings, &mut store, &Told::default())?;
+    let mut sinks = sinks(settings, &mut store, &LastTold::default())?;
     if sinks.is_empty() {
         return Err(Failure::call(NoSink));
     }

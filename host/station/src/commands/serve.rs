@@ -15,7 +15,7 @@ use crate::console;
 use crate::engine::{Engine, EngineEnded};
 use crate::exit::Exit;
 use crate::settings::Settings;
-use crate::store::Told;
+use crate::store::LastTold;
 use crate::web::{Access, App, Server, User, Who};
 
 /// How often systemd is told that the engine works.
@@ -77,7 +77,7 @@ fn until_signal(
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
     let at = listener.local_addr().map_err(Failure::error)?;
     let engine = Arc::new(ready.start()?);
-    let sending = Sending::begin(settings, engine.store(), &Told::default())?;
+    let sending = Sending::begin(settings, engine.store(), &LastTold::default())?;
     let app = App::new(settings.clone(), Arc::clone(&engine), access.at(at.port()), hints);
     let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
     begin(&engine).map_err(Failure::error)?;

@@ -21,7 +21,7 @@ use crate::plan::{Again, Plan};
 use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{Claim, PlantLink, SharedStore, Worker};
-use crate::work::{Aside, JobResult, Work, WorkError};
+use crate::work::{JobResult, SetAside, Work, WorkError};
 
 /// Take jobs of the plant, and judge the boards that they are about
 ///
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         store: store.clone(),
         program: OWN_PROGRAM.into(),
         worker,
-        aside: Aside::default(),
+        aside: SetAside::default(),
     };
     let stop = || signal.by();
     let tries_no_more = || ended_or(&stop, arguments.once);

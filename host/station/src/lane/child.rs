@@ -10,7 +10,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::acts::{RunContext, Try};
 use super::progress::ProgressMessages;
-use super::{Control, Job, Message, Ruling};
+use super::{Control, LaneJob, Message, Ruling};
 use crate::clock;
 use crate::plan::{Plan, Step, StepKind};
 use crate::record::{BoardSeen, StepOutcome, StepRecord};
@@ -74,7 +74,7 @@ impl Heeded {
 }
 
 /// Carries the job out, step by step, and reports on it. A step that does not pass is the last one.
-pub fn carry_out(job: &Job, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
+pub fn carry_out(job: &LaneJob, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
     tell(&Message::Begun { program: halfrow::VERSION.to_owned() });
     match prepared(job) {
         Ok((plan, target)) => {
@@ -86,7 +86,7 @@ pub fn carry_out(job: &Job, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
 }
 
 /// The plan, which must be the one with which the run began, and the board's target.
-fn prepared(job: &Job) -> Result<(Plan, Target), Said> {
+fn prepared(job: &LaneJob) -> Result<(Plan, Target), Said> {
     let plan = Plan::parse(&job.plan, job.text.clone());
     let plan = plan.map_err(|error| Said::of(&error))?;
     if plan.sha256 != job.sha256 {
@@ -96,7 +96,7 @@ fn prepared(job: &Job) -> Result<(Plan, Target), Said> {
     Ok((plan, target))
 }
 
-fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
+fn steps(job: &LaneJob, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
     let selected = plan.variant(&job.variant);
     let (stop, is_mock) = (heeded.stop(), job.is_mock);
     let limits = if is_mock { &[] } else { selected.limits.as_slice() };

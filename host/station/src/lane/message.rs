@@ -16,7 +16,7 @@ pub(crate) const MOST_LINE: usize = 32 << 20;
 /// What the lane is to do: the first line that it reads.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Job {
+pub struct LaneJob {
     /// The run.
     pub run: String,
     /// The target string of the board.

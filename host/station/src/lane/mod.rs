@@ -28,4 +28,4 @@ pub const MEMORY_MIB: u64 = 4096;
 pub(crate) const MEMORIES_MIB: std::ops::RangeInclusive<u64> = 64..=1_048_576;
 
 pub use doing::Doing;
-pub use message::{Control, Job, Message, Ruling};
+pub use message::{Control, LaneJob, Message, Ruling};

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use halfrow::verdict::StoppedBy;
 
 use super::message::MOST_LINE;
-use super::{Control, FILE_MIB, Job, Message, Ruling};
+use super::{Control, FILE_MIB, LaneJob, Message, Ruling};
 use crate::process_group::{command, killed, killed_until, waited};
 use crate::record::{BlobError, BoardSeen, StepRecord, made_within};
 use crate::said::{Said, Saying};
@@ -95,7 +95,7 @@ pub trait Attendant {
 /// Has a process of `program` do `job`; what the process writes goes to the folder `spool`.
 pub fn supervise(
     program: &Path,
-    job: &Job,
+    job: &LaneJob,
     spool: &Path,
     patience: Patience,
     attendant: &mut dyn Attendant,
@@ -128,7 +128,7 @@ struct Lane {
 }
 
 impl Lane {
-    fn start(program: &Path, job: &Job, spool: &Path) -> Result<Self, Said> {
+    fn start(program: &Path, job: &LaneJob, spool: &Path) -> Result<Self, Said> {
         let unusable = |source| Said::of(&BlobError::Folder { path: spool.to_owned(), source });
         made_within(spool).map_err(unusable)?;
         let events = File::create(spool.join(EVENTS)).map_err(unusable)?;
@@ -161,7 +161,7 @@ impl Lane {
     }
 
     /// Notes the process, so that the next start can find it, and hands it its job.
-    fn brief(&mut self, stdin: Option<ChildStdin>, job: &Job, spool: &Path) -> io::Result<()> {
+    fn brief(&mut self, stdin: Option<ChildStdin>, job: &LaneJob, spool: &Path) -> io::Result<()> {
         let id = self.child.id();
         fs::write(spool.join(PROCESS), format!("{id} {}\n", started(id).unwrap_or_default()))?;
         let (orders, given) = mpsc::channel();

@@ -79,7 +79,7 @@ impl Sink for PlantSink {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::Told;
+    use crate::store::LastTold;
 
     /// The plant shows both next to the station's name, and the second one calls for a person.
     #[test]
@@ -91,7 +91,7 @@ mod tests {
             plans: String::new(),
             unsent: 0,
             dead: 0,
-            told: Told::default(),
+            told: LastTold::default(),
         };
         // Nothing answers there.
         let address = PlantAddress::new("postgres://halfrow@127.0.0.1:1/plant", None, None).unwrap();

@@ -6,7 +6,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::{Attending, Order, Stage, Watch};
 use crate::labgrid::{AcquiredPlace, LaneBoard, Place};
-use crate::lane::Job;
+use crate::lane::LaneJob;
 use crate::lane::supervisor::{End, LaneReport, Patience, supervise};
 use crate::said::Said;
 
@@ -14,7 +14,7 @@ use crate::said::Said;
 /// lost, if it is no longer held at the end.
 pub(super) fn supervised(
     order: &Order<'_>,
-    mut job: Job,
+    mut job: LaneJob,
     spool: &Path,
     patience: Patience,
     attending: &mut Attending<'_>,

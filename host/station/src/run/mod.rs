@@ -23,7 +23,7 @@ pub use recovered::{Recovered, recover, recover_run};
 use crate::ids::NoRandomness;
 use crate::labgrid::{AcquiredPlace, LaneBoard};
 use crate::lane::supervisor::{Attendant, End, LaneReport};
-use crate::lane::{Job, Message, Ruling};
+use crate::lane::{LaneJob, Message, Ruling};
 use crate::plan::limits::Maker;
 use crate::plan::serial::{Serial, SerialError};
 use crate::plan::{Plan, Selected, changed, mock};
@@ -216,8 +216,8 @@ impl<'a> Subject<'a> {
 }
 
 /// The job that is handed to the lane.
-fn job(head: &RunHead, order: &Order<'_>, seed: u64, spool: &Path) -> Job {
-    Job {
+fn job(head: &RunHead, order: &Order<'_>, seed: u64, spool: &Path) -> LaneJob {
+    LaneJob {
         run: head.id.clone(),
         target: head.target.clone(),
         plan: order.plan_file.to_owned(),

@@ -26,7 +26,7 @@ use crate::input_error::{Fault, InputError, text_of};
 use crate::labgrid::LaneBoard;
 use crate::plan::{Plan, PlanName};
 use crate::published::PublicKey;
-use crate::store::{Introduction, SINK_OF_PLANT, Told};
+use crate::store::{Introduction, LastTold, SINK_OF_PLANT};
 
 /// The version of the settings' own format.
 pub const SCHEMA: u32 = 1;
@@ -221,7 +221,7 @@ impl Settings {
             |PlanFile { plan, .. }: &PlanFile| format!("{} {} {}", plan.product, plan.name, plan.version);
         let plans = self.plans.iter().map(plan).collect::<Vec<_>>().join("\n");
         let program = halfrow::VERSION.to_owned();
-        let (name, told) = (self.name.clone(), Told::default());
+        let (name, told) = (self.name.clone(), LastTold::default());
         Introduction { name, origin, program, plans, unsent: 0, dead: 0, told }
     }
 

@@ -50,11 +50,11 @@ pub use error::StoreError;
 pub use folder::Folder;
 pub(crate) use folder::{ASIDE, LOCK, make_folder};
 use generation::{Log, Opened};
-pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
+pub use outbox::{AtSink, AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Tried, Unsent};
 pub(crate) use outbox::{Backlog, DEAD_SHOWN, FIRST_WAIT_MS, LONGEST_WAIT_MS};
 pub use plant::{
-    Claim, Introduction, Job, JobState, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError,
-    PlantLink, SharedBoard, Told, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
+    Claim, Introduction, Job, JobState, LastTold, Lease, NewJob, Plant, PlantAddress, PlantAddressError,
+    PlantError, PlantLink, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
 };
 pub(crate) use plant::{
     JobsInState, KeptRun, LEASE_MS, SILENT_MS, counted_jobs, open_jobs, publications, seen_units, waiters,

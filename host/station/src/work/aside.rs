@@ -15,14 +15,14 @@ const AGAIN: Duration = Duration::from_secs(5);
 
 /// What was set aside.
 #[derive(Debug, Default)]
-pub struct Aside {
+pub struct SetAside {
     /// Until when, for each plan, by its hash.
     plans: Mutex<BTreeMap<String, Instant>>,
     /// [Pairings](Claim::pairing) of a plan with a board.
     boards: Mutex<BTreeSet<String>>,
 }
 
-impl Aside {
+impl SetAside {
     /// `worker`, without what is set aside.
     pub(super) fn without(&self, worker: &Worker) -> Worker {
         let plans = self.plans.lock();

@@ -18,7 +18,7 @@ use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 use rand::{RngExt as _, rng};
 
-pub use aside::Aside;
+pub use aside::SetAside;
 pub use error::WorkError;
 pub use held::{Held, Holding, Lost};
 
@@ -76,7 +76,7 @@ pub struct Work<'a> {
     /// Its identity at the plant.
     pub worker: Worker,
     /// What it takes no jobs of.
-    pub aside: Aside,
+    pub aside: SetAside,
 }
 
 impl Work<'_> {

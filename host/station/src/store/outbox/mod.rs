@@ -58,7 +58,7 @@ pub struct Entry {
 
 /// The state of a run at a sink. A run that is not to be sent there is neither done nor dead.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Standing {
+pub struct AtSink {
     /// Whether the sink certainly has it.
     pub is_done: bool,
     /// Whether it waits for a person.
@@ -242,11 +242,11 @@ impl Folder {
     ///
     /// # Errors
     /// Like [`Self::due`].
-    pub fn at_plant(&self, run: &str) -> Result<Standing, StoreError> {
+    pub fn at_plant(&self, run: &str) -> Result<AtSink, StoreError> {
         let found = self.read("to tell what was sent", |from| {
             from.first(sql::OUTBOX_ENTRY, values![SINK_OF_PLANT, &Kind::Run, run], |row| {
                 let [done_ms, dead_ms] = [row.get::<Option<i64>>(0)?, row.get(1)?];
-                Ok(Standing { is_done: done_ms.is_some(), is_dead: dead_ms.is_some(), said: said(row, 2)? })
+                Ok(AtSink { is_done: done_ms.is_some(), is_dead: dead_ms.is_some(), said: said(row, 2)? })
             })
         })?;
         Ok(found.unwrap_or_default())

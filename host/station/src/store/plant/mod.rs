@@ -130,7 +130,7 @@ pub(crate) const SILENT_MS: i64 = 120_000;
 /// When this program told the plant of its station last, in milliseconds since 1970, UTC, by the plant's clock; `None` if that is
 /// not known. Clones share it.
 #[derive(Clone, Debug, Default)]
-pub struct Told(Arc<Mutex<Option<i64>>>);
+pub struct LastTold(Arc<Mutex<Option<i64>>>);
 
 /// What a station tells the plant of itself.
 #[derive(Clone, Debug)]
@@ -148,7 +148,7 @@ pub struct Introduction {
     /// Those of them that wait for a person.
     pub dead: u32,
     /// When the plant was told so last.
-    pub told: Told,
+    pub told: LastTold,
 }
 
 /// A connection to a plant.

@@ -24,7 +24,7 @@ use halfrow_station::settings::Settings;
 use halfrow_station::store::{
     Folder, NewJob, Plant, PlantLink, SharedBoard, SharedStore, Store, Wanted, Worker,
 };
-use halfrow_station::work::{Aside, JobResult, Work};
+use halfrow_station::work::{JobResult, SetAside, Work};
 
 use crate::common::PLAN;
 use crate::lanes::floor::HANG;
@@ -125,7 +125,7 @@ fn at_work(settings: &Settings, program: PathBuf) -> Work<'_> {
         program,
         worker: Worker { plans, ..worker(&settings.name) },
         settings,
-        aside: Aside::default(),
+        aside: SetAside::default(),
     }
 }
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use halfrow::verdict::StoppedBy;
 use halfrow_station::lane::supervisor::{Attendant, End, Patience, supervise};
-use halfrow_station::lane::{Job, Message, Ruling};
+use halfrow_station::lane::{LaneJob, Message, Ruling};
 use halfrow_station::record::BoardSeen;
 
 use super::floor::HANG;
@@ -46,8 +46,8 @@ fn end_of(told: &str, silence: Duration, attendant: &mut dyn Attendant) -> End {
 }
 
 /// What a lane in `folder` is given to do, without a plan's text.
-fn job(folder: &Path) -> Job {
-    Job {
+fn job(folder: &Path) -> LaneJob {
+    LaneJob {
         run: "run".to_owned(),
         target: "mock".to_owned(),
         plan: folder.join("plan.toml"),
@@ -74,7 +74,7 @@ fn end_in(
     attendant: &mut dyn Attendant,
 ) -> End {
     let lane = script(folder, "lane", lane);
-    let job = Job { text, memory_mib: 64, ..job(folder) };
+    let job = LaneJob { text, memory_mib: 64, ..job(folder) };
     supervise(&lane, &job, folder, patience, attendant).end
 }
 
@@ -192,7 +192,7 @@ fn a_lane_that_ends_more_tries_than_its_plan_has_is_killed() {
 #[test]
 fn a_lane_whose_plan_is_another_one_refuses_it() {
     let place = folder();
-    let job = Job { text: PLAN.to_owned(), sha256: "0".repeat(64), ..job(place.path()) };
+    let job = LaneJob { text: PLAN.to_owned(), sha256: "0".repeat(64), ..job(place.path()) };
     let patience = Patience { silence: HANG, whole: HANG, tries: 2 };
     let report = supervise(program(), &job, place.path(), patience, &mut Slow(Duration::ZERO));
     let End::Refused(why) = report.end else { panic!("{report:?}") };

@@ -1,7 +1,9 @@
 //! What arrives at the plant is what the station has.
 
 use halfrow_station::outbox::{PlantSink, Round, Standing, round};
-use halfrow_station::store::{Introduction, Plant, PlantAddress, SINK_OF_PLANT, SharedStore, Store, Told};
+use halfrow_station::store::{
+    Introduction, LastTold, Plant, PlantAddress, SINK_OF_PLANT, SharedStore, Store,
+};
 
 use super::rights::as_station;
 use super::server::Server;
@@ -40,7 +42,7 @@ pub(super) fn sink(name: &str, store: &mut Store, address: PlantAddress) -> Plan
 /// What a station of this name says of itself.
 pub(crate) fn introduction(name: &str, origin: String) -> Introduction {
     let plans = "CAM-T final 1\nCAM-T intake 1".to_owned();
-    let (name, program, told) = (name.to_owned(), "halfrow 0".to_owned(), Told::default());
+    let (name, program, told) = (name.to_owned(), "halfrow 0".to_owned(), LastTold::default());
     Introduction { name, origin, program, plans, unsent: 0, dead: 0, told }
 }
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use halfrow::Verdict;
 use halfrow::verdict::StoppedBy;
 use halfrow_station::lane::child::{carry_out, orders};
-use halfrow_station::lane::{Control, Job, MEMORY_MIB, Message, Ruling};
+use halfrow_station::lane::{Control, LaneJob, MEMORY_MIB, Message, Ruling};
 use halfrow_station::plan::Plan;
 use halfrow_station::record::{RunCause, StepOutcome, StepRecord};
 use nix::sys::signal::Signal;
@@ -314,7 +314,7 @@ fn stopped(text: String, target: String, is_last: impl Fn(&Message) -> bool + Sy
     };
     let [run, variant] = ["r", ""].map(str::to_owned);
     let spool = spool.path().to_owned();
-    let job = Job {
+    let job = LaneJob {
         run,
         target,
         plan: path,
