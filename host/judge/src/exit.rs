@@ -76,26 +76,17 @@ impl Exit {
     /// The cause of a result with this code; none after a usage error. A code does not tell a caller who stops a run from a person
     /// who does.
     #[must_use]
-    pub const fn cause(self) -> Option<Cause> {
-        Some(match self {
-            Self::Pass => Cause::Equal,
-            Self::Fail => Cause::Different,
-            Self::Usage => return None,
-            Self::Error => Cause::Station,
-            Self::Busy => Cause::Busy,
-            Self::NothingJudged => Cause::NothingJudged,
-            Self::Refused => Cause::Refused,
-            Self::HungUp => Cause::Stopped(StoppedBy::Disconnection),
-            Self::Interrupted => Cause::Stopped(StoppedBy::Person),
-            Self::Terminated => Cause::Stopped(StoppedBy::System),
-        })
+    pub fn cause(self) -> Option<Cause> {
+        Cause::ALL.into_iter().find(|&cause| Self::from(cause) == self)
     }
 
     /// Who stopped the program, if this exit code is that of a signal.
     #[must_use]
     pub fn stopped_by(code: usize) -> Option<StoppedBy> {
-        let all = [StoppedBy::Person, StoppedBy::System, StoppedBy::Disconnection];
-        all.into_iter().find(|&by| usize::from(Self::from(Cause::Stopped(by)).code()) == code)
+        match Self::of(u8::try_from(code).ok()?)?.cause()? {
+            Cause::Stopped(by) => Some(by),
+            _ => None,
+        }
     }
 }
 
