@@ -4,6 +4,7 @@ use crate::commands::codes;
 use crate::exit::Exit;
 use crate::{flags, json};
 use halfrow::board::{BoardError, OpenFailed};
+use halfrow::call::VoidOption;
 use halfrow::correction::CorrectionError;
 use halfrow::link::OpenError;
 use halfrow::optics::OpticsError;
@@ -70,6 +71,12 @@ impl Failure {
         let failed =
             Document { schema: Schema, command, verdict, exit_code: self.exit, board: None, error, rest };
         json::document(&failed).unwrap_or_default()
+    }
+}
+
+impl From<VoidOption> for Failure {
+    fn from(error: VoidOption) -> Self {
+        Self::call(error)
     }
 }
 

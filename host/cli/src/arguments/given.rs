@@ -24,38 +24,11 @@ pub(crate) struct Given {
 
 /// What makes options void.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(test, derive(clap::ValueEnum))]
-pub(crate) enum Decider {
-    /// A recording that is judged again.
-    Recording,
-    /// A recording that is made.
-    Record,
-    /// A list of what would be streamed, without a run.
-    List,
-    /// A table file, whatever it holds.
-    Tables,
-    /// A time limit, by which the frames are chosen.
-    Within,
-    /// The model, which corrects without a board.
-    Model,
-    /// Frames of which none is a file.
-    NoFrameFile,
-    /// Samples without a header.
-    Headerless,
-    /// Frames that are written, without tables.
-    MadeFrames,
-    /// Tables that are written, which suit every phase.
-    MadeTables,
-    /// A lens whose figures are shown, which suit every sample.
-    ShownLens,
-    /// Items of which none uses a board.
-    NoBoardItem,
-    /// Items of which none uses the paper's photographs.
-    NoPhotographItem,
-    /// Items without Fig. 4.
-    NoFigure4,
-    /// Items without the FPGA's resources.
-    NoSynthesisItem,
+pub(crate) struct Decider {
+    /// Lists of the ids of these options.
+    voids: &'static [&'static [&'static str]],
+    /// Why, as the words after the option's name.
+    reason: &'static str,
 }
 
 /// Options that tables are made from, and that a table file has too. They are accepted beside a file if both agree.
@@ -94,65 +67,85 @@ const RUN: [&str; 10] = [
 const BOARD: [&str; 4] = ["board", "timeout", "retry_limit", "take_over"];
 
 impl Decider {
+    /// A recording that is judged again.
+    pub(crate) const RECORDING: Self = Self {
+        voids: &[call::BESIDE_RECORDING.options, &IN_TABLE_FILES, &LENS],
+        reason: call::BESIDE_RECORDING.reason,
+    };
+    /// A recording that is made.
+    pub(crate) const RECORD: Self =
+        Self { voids: &[call::WHILE_RECORDED.options], reason: call::WHILE_RECORDED.reason };
+    /// A list of what would be streamed, without a run.
+    pub(crate) const LIST: Self = Self {
+        voids: &[&RUN],
+        reason: "does nothing beside --list, which lists what would be streamed and runs nothing; give one of them",
+    };
+    /// A table file, whatever it holds.
+    pub(crate) const TABLES: Self = Self {
+        voids: &[&LENS],
+        reason: "cannot be used together with --tables, whose file holds the tables; give one of them",
+    };
+    /// A time limit, by which the frames are chosen.
+    pub(crate) const WITHIN: Self = Self { voids: &[call::WITHIN.options], reason: call::WITHIN.reason };
+    /// The model, which corrects without a board.
+    pub(crate) const MODEL: Self = Self {
+        voids: &[&BOARD],
+        reason: "does nothing beside --model, which corrects without a board; give one of them",
+    };
+    /// Frames of which none is a file.
+    pub(crate) const NO_FRAME_FILE: Self = Self {
+        voids: &[&["raw", "fit"]],
+        reason: "is for frames that are files, and none is; leave it out, or name a file",
+    };
+    /// Samples without a header.
+    pub(crate) const HEADERLESS: Self = Self {
+        voids: &[&["fit"]],
+        reason: "does nothing beside --raw, whose samples are never scaled; give one of them",
+    };
+    /// Frames that are written, without tables.
+    pub(crate) const MADE_FRAMES: Self = Self {
+        voids: &[&["rows", "projection", "entries", "nodes_every"]],
+        reason: "says how tables are made, and a frame has none; leave it out",
+    };
+    /// Tables that are written, which suit every phase.
+    pub(crate) const MADE_TABLES: Self = Self {
+        voids: &[&["phase"]],
+        reason: "changes nothing about tables; leave it out, and give it to the command that uses them",
+    };
+    /// A lens whose figures are shown, which suit every sample.
+    pub(crate) const SHOWN_LENS: Self =
+        Self { voids: &[&["phase", "bits"]], reason: "changes nothing about a lens's figures; leave it out" };
+    /// Items of which none uses a board.
+    pub(crate) const NO_BOARD_ITEM: Self = Self {
+        voids: &[&BOARD],
+        reason: "does nothing, since no item that is asked for goes through a board; leave it out, or add delay, or name a \
+                 board for table1",
+    };
+    /// Items of which none uses the paper's photographs.
+    pub(crate) const NO_PHOTOGRAPH_ITEM: Self = Self {
+        voids: &[&["images"]],
+        reason: "does nothing, since no item that is asked for takes them; leave it out, or add fig12 or table1",
+    };
+    /// Items without Fig. 4.
+    pub(crate) const NO_FIGURE_4: Self = Self {
+        voids: &[&["photograph", "lines"]],
+        reason: "is for fig4, which is not asked for; leave it out, or add fig4",
+    };
+    /// Items without the FPGA's resources.
+    pub(crate) const NO_SYNTHESIS_ITEM: Self = Self {
+        voids: &[&["synthesis"]],
+        reason: "is for resources, which are not asked for; leave it out, or add resources",
+    };
+
     /// `argument`, left out of the help if it has no effect beside this in any call of its command.
     pub(crate) fn hides(self, argument: Arg) -> Arg {
-        let is_void = self.voids().contains(&argument.get_id().as_str());
+        let is_void = self.voids().any(|id| argument.get_id() == id);
         argument.hide(is_void)
     }
 
     /// The ids of the options that have no effect beside it.
-    fn voids(self) -> Vec<&'static str> {
-        let options: &[&[&str]] = match self {
-            Self::Recording => &[call::BESIDE_RECORDING.options, &IN_TABLE_FILES, &LENS],
-            Self::Record => &[call::WHILE_RECORDED.options],
-            Self::List => &[&RUN],
-            Self::Tables => &[&LENS],
-            Self::Within => &[call::WITHIN.options],
-            Self::Model | Self::NoBoardItem => &[&BOARD],
-            Self::NoPhotographItem => &[&["images"]],
-            Self::NoFigure4 => &[&["photograph", "lines"]],
-            Self::NoSynthesisItem => &[&["synthesis"]],
-            Self::NoFrameFile => &[&["raw", "fit"]],
-            Self::Headerless => &[&["fit"]],
-            Self::MadeFrames => &[&["rows", "projection", "entries", "nodes_every"]],
-            Self::MadeTables => &[&["phase"]],
-            Self::ShownLens => &[&["phase", "bits"]],
-        };
-        options.concat()
-    }
-
-    /// Why, as the words after the option's name.
-    fn reason(self) -> &'static str {
-        match self {
-            Self::Recording => call::BESIDE_RECORDING.reason,
-            Self::Record => call::WHILE_RECORDED.reason,
-            Self::List => {
-                "does nothing beside --list, which lists what would be streamed and runs nothing; give one of them"
-            }
-            Self::Tables => {
-                "cannot be used together with --tables, whose file holds the tables; give one of them"
-            }
-            Self::Within => call::WITHIN.reason,
-            Self::Model => "does nothing beside --model, which corrects without a board; give one of them",
-            Self::NoFrameFile => "is for frames that are files, and none is; leave it out, or name a file",
-            Self::Headerless => "does nothing beside --raw, whose samples are never scaled; give one of them",
-            Self::MadeFrames => "says how tables are made, and a frame has none; leave it out",
-            Self::MadeTables => {
-                "changes nothing about tables; leave it out, and give it to the command that uses them"
-            }
-            Self::ShownLens => "changes nothing about a lens's figures; leave it out",
-            Self::NoBoardItem => {
-                "does nothing, since no item that is asked for goes through a board; leave it out, or add delay, or name \
-                 a board for table1"
-            }
-            Self::NoPhotographItem => {
-                "does nothing, since no item that is asked for takes them; leave it out, or add fig12 or table1"
-            }
-            Self::NoFigure4 => "is for fig4, which is not asked for; leave it out, or add fig4",
-            Self::NoSynthesisItem => {
-                "is for resources, which are not asked for; leave it out, or add resources"
-            }
-        }
+    fn voids(self) -> impl Iterator<Item = &'static str> {
+        self.voids.iter().copied().flatten().copied()
     }
 }
 
@@ -164,7 +157,7 @@ impl Given {
 
     /// The first option on the command line that is void beside `decider`, as it is written there.
     pub(crate) fn void_flag(&self, decider: Decider) -> Option<String> {
-        decider.voids().into_iter().find(|id| self.is_flag(id)).map(written)
+        decider.voids().find(|id| self.is_flag(id)).map(written)
     }
 
     /// Where the value of the option `id` comes from, if not from the command line: the environment, or else the settings file
@@ -184,13 +177,13 @@ impl Given {
     /// keys `settings`, there is only a line in the log.
     pub(crate) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> Result<(), VoidOption> {
         if let Some(option) = self.void_flag(decider) {
-            return Err(VoidOption { option, reason: decider.reason() });
+            return Err(VoidOption { option, reason: decider.reason });
         }
         for id in decider.voids() {
             let of_variable = self.variables.iter().any(|variable| variable == id);
             if of_variable || settings.contains(&id) {
                 let place = if of_variable { "the environment" } else { "the settings" };
-                tracing::info!("{} of {place} is passed over: it {}", written(id), decider.reason());
+                tracing::info!("{} of {place} is passed over: it {}", written(id), decider.reason);
             }
         }
         Ok(())
@@ -256,8 +249,6 @@ impl Args for Given {
 
 #[cfg(test)]
 mod tests {
-    use clap::ValueEnum as _;
-
     use super::*;
     use crate::commands::Cli;
 
@@ -283,7 +274,7 @@ mod tests {
 
     /// Checks that every option of `verify` is void beside `decider` or does something there. A new one has to be assigned.
     fn assigned(decider: Decider, do_something: &[&str]) {
-        let mut decided: Vec<&str> = decider.voids();
+        let mut decided: Vec<&str> = decider.voids().collect();
         decided.extend(do_something);
         decided.sort_unstable();
         let mut options = options("verify");
@@ -295,7 +286,7 @@ mod tests {
     fn every_option_of_verify_is_void_or_does_something_beside_a_recording() {
         let stand =
             ["board", "report", "record", "operator", "overwrite", "require_hardware", "list", "timeout"];
-        assigned(Decider::Recording, &stand);
+        assigned(Decider::RECORDING, &stand);
     }
 
     #[test]
@@ -303,27 +294,35 @@ mod tests {
         // `within` is refused by clap already.
         let of_the_plan =
             ["frame", "repeat", "at_speed", "within", "tables", "kernel", "phase", "raw", "fit", "seed"];
-        assigned(Decider::List, &[&["board", "list"], &of_the_plan[..], &IN_TABLE_FILES, &LENS].concat());
+        assigned(Decider::LIST, &[&["board", "list"], &of_the_plan[..], &IN_TABLE_FILES, &LENS].concat());
     }
 
     #[test]
     fn options_that_are_void_exist() {
-        for decider in Decider::value_variants() {
-            let command = match decider {
-                Decider::Recording | Decider::Record | Decider::List | Decider::Tables | Decider::Within => {
-                    "verify"
-                }
-                Decider::Model | Decider::NoFrameFile | Decider::Headerless => "correct",
-                Decider::MadeFrames => "frames",
-                Decider::MadeTables => "tables",
-                Decider::ShownLens => "lens",
-                Decider::NoBoardItem
-                | Decider::NoPhotographItem
-                | Decider::NoFigure4
-                | Decider::NoSynthesisItem => "paper",
-            };
+        let deciders: [(&str, &[Decider]); 6] = [
+            (
+                "verify",
+                &[Decider::RECORDING, Decider::RECORD, Decider::LIST, Decider::TABLES, Decider::WITHIN],
+            ),
+            ("correct", &[Decider::MODEL, Decider::NO_FRAME_FILE, Decider::HEADERLESS]),
+            ("frames", &[Decider::MADE_FRAMES]),
+            ("tables", &[Decider::MADE_TABLES]),
+            ("lens", &[Decider::SHOWN_LENS]),
+            (
+                "paper",
+                &[
+                    Decider::NO_BOARD_ITEM,
+                    Decider::NO_PHOTOGRAPH_ITEM,
+                    Decider::NO_FIGURE_4,
+                    Decider::NO_SYNTHESIS_ITEM,
+                ],
+            ),
+        ];
+        for (command, deciders) in deciders {
             let known = options(command);
-            assert!(decider.voids().iter().all(|id| known.iter().any(|known| known == id)), "{decider:?}");
+            for id in deciders.iter().flat_map(|decider| decider.voids()) {
+                assert!(known.iter().any(|known| known == id), "{command}: {id}");
+            }
         }
     }
 }

@@ -38,10 +38,10 @@ pub(crate) struct InputArguments {
 impl InputArguments {
     /// Refuses `--fit` beside `--raw`.
     pub(crate) fn refuse_void(&self, given: &Given, settings: &Settings) -> Result<(), Failure> {
-        match self.raw {
-            Some(_) => given.refuse_void(Decider::Headerless, &settings.keys()).map_err(Failure::call),
-            None => Ok(()),
+        if self.raw.is_some() {
+            given.refuse_void(Decider::HEADERLESS, &settings.keys())?;
         }
+        Ok(())
     }
 
     /// How to read a frame for `geometry`.

@@ -47,8 +47,8 @@ impl TableArgument {
         let Some(path) = self.path(settings) else { return Ok(None) };
         let is_flag = given.is_flag("tables");
         if is_flag {
-            given.refuse_void(Decider::Tables, &[]).map_err(Failure::call)?;
-        } else if let Some(option) = given.void_flag(Decider::Tables) {
+            given.refuse_void(Decider::TABLES, &[])?;
+        } else if let Some(option) = given.void_flag(Decider::TABLES) {
             tracing::warn!("the table file {} is passed over, since {option} makes tables", path.display());
             return Ok(None);
         }

@@ -19,7 +19,7 @@ use crate::files::make_folder;
 use halfrow::frames::{self, Builtin};
 
 #[derive(Debug, Args)]
-#[command(mut_args(|argument| Decider::MadeFrames.hides(argument)))]
+#[command(mut_args(|argument| Decider::MADE_FRAMES.hides(argument)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,
@@ -41,7 +41,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    arguments.given.refuse_void(Decider::MadeFrames, &[]).map_err(Failure::call)?;
+    arguments.given.refuse_void(Decider::MADE_FRAMES, &[])?;
     arguments.lens.refuse_field_of_view("a built-in frame")?;
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let is_wanted = |frame: &Builtin| arguments.only.is_empty() || arguments.only.contains(frame);

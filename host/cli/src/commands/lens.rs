@@ -21,7 +21,7 @@ use halfrow::words::{count, grouped, plain_lines, verb};
 use halfrow_lab::{Amounts, Residuals};
 
 #[derive(Debug, Args)]
-#[command(mut_args(|argument| Decider::ShownLens.hides(argument)))]
+#[command(mut_args(|argument| Decider::SHOWN_LENS.hides(argument)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    arguments.given.refuse_void(Decider::ShownLens, &[]).map_err(Failure::call)?;
+    arguments.given.refuse_void(Decider::SHOWN_LENS, &[])?;
     if let Some(map) = &arguments.map {
         refuse_stdout("--map", map).map_err(Failure::call)?;
         frames::check_png(map).map_err(Failure::call)?;

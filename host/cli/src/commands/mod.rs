@@ -119,7 +119,7 @@ impl Cli {
     /// [`Failure`] with its exit code, when there is no result to print.
     pub fn run(&self) -> Result<Exit, Failure> {
         if let Command::Station(_) = self.0.command {
-            station::refuse_ours(&self.0.given).map_err(Failure::call)?;
+            station::refuse_ours(&self.0.given)?;
         }
         let settings = Settings::load(self.0.settings.as_deref())
             .map_err(|error| self.placed(Failure::call(error).in_value_of("--settings"), None, &[]))?;

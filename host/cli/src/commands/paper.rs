@@ -148,10 +148,10 @@ impl Arguments {
     fn check(&self, items: &[Item], uses_board: bool, files: Files, context: &Context) -> anyhow::Result<()> {
         let any = |is_meant: fn(Item) -> bool| items.iter().any(|&item| is_meant(item));
         for (is_wanted, decider) in [
-            (uses_board, Decider::NoBoardItem),
-            (any(Item::needs_photographs), Decider::NoPhotographItem),
-            (any(|item| item == Item::Fig4), Decider::NoFigure4),
-            (any(|item| item == Item::Resources), Decider::NoSynthesisItem),
+            (uses_board, Decider::NO_BOARD_ITEM),
+            (any(Item::needs_photographs), Decider::NO_PHOTOGRAPH_ITEM),
+            (any(|item| item == Item::Fig4), Decider::NO_FIGURE_4),
+            (any(|item| item == Item::Resources), Decider::NO_SYNTHESIS_ITEM),
         ] {
             if !is_wanted {
                 self.given.refuse_void(decider, &context.settings.keys())?;

@@ -19,7 +19,7 @@ use halfrow::tables::{TableFile, TableFormat};
 use halfrow::words::count;
 
 #[derive(Debug, Args)]
-#[command(mut_args(|argument| Decider::MadeTables.hides(argument)))]
+#[command(mut_args(|argument| Decider::MADE_TABLES.hides(argument)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    arguments.given.refuse_void(Decider::MadeTables, &[]).map_err(Failure::call)?;
+    arguments.given.refuse_void(Decider::MADE_TABLES, &[])?;
     refuse_stdout("--output", &arguments.output).map_err(Failure::call)?;
     let format = TableFormat::of(&arguments.output).map_err(Failure::call)?;
     let of_settings = context.settings.kernel.as_deref().map(OsStr::new);

@@ -249,10 +249,10 @@ impl Arguments {
     /// Refuses options that do nothing for these inputs.
     fn refuse_void(&self, inputs: &[FrameName], settings: &Settings) -> Result<(), Failure> {
         if inputs.iter().all(|input| input.file().is_none()) {
-            self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
+            self.given.refuse_void(Decider::NO_FRAME_FILE, &[])?;
         }
         if self.model {
-            self.given.refuse_void(Decider::Model, &settings.keys()).map_err(Failure::call)?;
+            self.given.refuse_void(Decider::MODEL, &settings.keys())?;
         }
         self.input.refuse_void(&self.given, settings)
     }

@@ -70,7 +70,7 @@ fn repeats() -> impl TypedValueParser<Value = u32> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     if arguments.list {
-        arguments.given.refuse_void(Decider::List, &settings.keys()).map_err(Failure::call)?;
+        arguments.given.refuse_void(Decider::LIST, &settings.keys())?;
     }
     let recording = arguments.run.board.recording(settings)?;
     let frames = arguments.frames(settings)?;
@@ -102,7 +102,7 @@ impl Arguments {
         let settings = &context.settings;
         let (plan, options) = match recording {
             Some(recording) => {
-                self.given.refuse_void(Decider::Recording, &settings.keys()).map_err(Failure::call)?;
+                self.given.refuse_void(Decider::RECORDING, &settings.keys())?;
                 let (plan, mut options) = RecordedRun::restore(recording)?;
                 options.provenance.operator = self.run.operator();
                 let require_hardware = self.run.requires_hardware(settings);
@@ -118,13 +118,13 @@ impl Arguments {
     fn plan(&self, frames: Vec<FrameName>, context: &Context) -> Result<(Plan, RunOptions), Failure> {
         let settings = &context.settings;
         if frames.iter().all(|frame| frame.file().is_none()) {
-            self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
+            self.given.refuse_void(Decider::NO_FRAME_FILE, &[])?;
         }
         if self.within.is_some() {
-            self.given.refuse_void(Decider::Within, &settings.keys()).map_err(Failure::call)?;
+            self.given.refuse_void(Decider::WITHIN, &settings.keys())?;
         }
         if self.record.is_some() {
-            self.given.refuse_void(Decider::Record, &settings.keys()).map_err(Failure::call)?;
+            self.given.refuse_void(Decider::RECORD, &settings.keys())?;
         }
         self.input.refuse_void(&self.given, settings)?;
         // The report names each file with its hash.
