@@ -11,17 +11,11 @@ pub const REPEATS: RangeInclusive<u32> = 1..=1000;
 /// The most seconds that an option takes: some thirty years.
 pub const MOST_SECONDS: f64 = 1e9;
 
-/// The longest time that a run can be asked to keep within, and the advice on what [`within`] takes.
-macro_rules! longest {
-    ($seconds:literal) => {
-        /// The longest time that a run can be asked to keep within, in seconds.
-        const LONGEST: u32 = $seconds;
-        /// Advice on what [`within`] takes.
-        pub const WITHIN_TAKES: &str =
-            concat!("give a number of seconds, more than 0 and at most ", $seconds);
-    };
-}
-longest!(1_000_000);
+/// The longest time that a run can be asked to keep within, in seconds.
+const LONGEST: f64 = 1_000_000.0;
+
+/// Advice on what [`within`] takes.
+pub const WITHIN_TAKES: &str = "give a number of seconds, more than 0 and at most 1000000";
 
 /// The option would have no effect beside another one that is given.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -133,6 +127,6 @@ fn time(seconds: f64) -> Option<Duration> {
 /// `seconds` as a time to judge within; none if it is not what [`WITHIN_TAKES`] asks for.
 #[must_use]
 pub fn within(seconds: f64) -> Option<Duration> {
-    let is_time = seconds > 0.0 && seconds <= f64::from(LONGEST);
+    let is_time = seconds > 0.0 && seconds <= LONGEST;
     is_time.then(|| Duration::from_secs_f64(seconds))
 }

@@ -4,6 +4,7 @@ mod listing;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::Args;
 use clap::builder::TypedValueParser;
@@ -41,7 +42,7 @@ pub(super) struct Arguments {
     at_speed: Option<f64>,
     /// Judge within this many seconds, at most 1,000,000, by the parts of the run that find the most faults per second
     #[arg(long, value_name = "SECONDS", value_parser = within, conflicts_with_all = ["record", "list"])]
-    within: Option<f64>,
+    within: Option<Duration>,
     /// Stop at the first wrong frame
     #[arg(long)]
     fail_fast: bool,
@@ -57,9 +58,9 @@ pub(super) struct Arguments {
     input: InputArguments,
 }
 
-fn within(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|&seconds| call::within(seconds).is_some());
-    seconds.ok_or_else(|| call::WITHIN_TAKES.to_owned())
+fn within(text: &str) -> Result<Duration, String> {
+    let time = text.parse().ok().and_then(call::within);
+    time.ok_or_else(|| call::WITHIN_TAKES.to_owned())
 }
 
 fn repeats() -> impl TypedValueParser<Value = u32> {
@@ -168,7 +169,7 @@ impl Arguments {
             frames,
             repeat: self.repeat,
             at_speed: seconds("--at-speed", self.at_speed.or(settings.at_speed))?.into(),
-            within: self.within.and_then(call::within),
+            within: self.within,
             fail_fast: self.fail_fast,
             seed: self.run.seed(settings),
             ..chosen.plan(phase)
