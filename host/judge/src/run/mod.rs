@@ -19,6 +19,7 @@
 //! why a run ended, of which `conclude` makes the report.
 
 mod at_speed;
+mod drawn;
 mod findings;
 mod frames;
 mod golden;

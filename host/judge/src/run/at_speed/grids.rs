@@ -7,8 +7,8 @@ use halfrow_protocol::message::Grids;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
-use super::corners::{BY_TURNS, CALM, drawn_factors, drawn_kernel, fit};
 use crate::board::{Capabilities, grids};
+use crate::run::drawn::{BY_TURNS, Weights, drawn_factors, drawn_kernel, fit};
 use crate::run::plan::variations::Build;
 use crate::tables::Generation;
 
@@ -57,7 +57,11 @@ pub(super) fn grid_corners(
             [drawn_grid(geometry, shape, build.ring, draws), drawn_factors(geometry, build.ring, draws)];
         let made = (first + 2 * place as u8..).zip(tables).take(build.table_banks.into());
         let generation = |(number, tables)| {
-            Some(Generation { number, tables: tables?, kernel: drawn_kernel(build.taps, CALM, draws)? })
+            Some(Generation {
+                number,
+                tables: tables?,
+                kernel: drawn_kernel(build.taps, Weights::Calm, draws)?,
+            })
         };
         made.map(generation).collect()
     };

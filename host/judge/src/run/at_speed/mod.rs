@@ -40,7 +40,7 @@ pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames}
 pub(super) use repeated::MadeRows;
 use watched::{BurstSeen, EndsEarly};
 
-pub(super) use corners::{BY_TURNS, CALM, WILD, drawn_factors, drawn_kernel, fit, geometries_of_corners};
+pub(super) use corners::geometries_of_corners;
 pub(super) use predicted::signer;
 
 /// The content id that the model makes (AT-SPEED.md).

@@ -18,7 +18,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::frames::{Builtin, Scene};
 use crate::result::{SoakLength, Variation};
-use crate::run::at_speed::{WILD, drawn_factors, drawn_kernel};
+use crate::run::drawn::{Weights, drawn_factors, drawn_kernel};
 use crate::tables::Generation;
 use parts::{Part, Selection};
 use variations::{Build, Vary, varied};
@@ -292,7 +292,7 @@ impl Plan {
     /// Random factors up to what the ring allows, and a random kernel with weights at both ends of their range.
     fn drawn_decoy(&self, build: &Build) -> Option<Generation> {
         let mut draws = Pcg64Mcg::new(u128::from(self.seed) | 1 << 68);
-        let kernel = drawn_kernel(build.taps, WILD, &mut draws)?;
+        let kernel = drawn_kernel(build.taps, Weights::Wild, &mut draws)?;
         let tables = match self.tables.shape() {
             None => drawn_factors(*self.tables.geometry(), build.ring, &mut draws)?,
             Some(_) => Some(self.tables.halved()).filter(|tables| tables.check_ring(build.ring).is_ok())?,

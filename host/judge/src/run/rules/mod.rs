@@ -44,7 +44,7 @@ use crate::progress::Step;
 use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Lead, RowPart, RowsTried, Rule, Suspect};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
-pub(super) use posed::Posed;
+use posed::Posed;
 pub(super) use price::price;
 pub(super) use quoted::answer;
 use quoted::answers;
@@ -52,6 +52,7 @@ use refusals::Refusals;
 use small::Small;
 pub(super) use trap::tallest_of_rules;
 pub(super) use waiting::MOST_FILLED;
+pub(super) use windows::window_wrong;
 
 /// The first row factor of the shadow bank.
 const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
@@ -370,7 +371,7 @@ fn doubted(found: Finding, doubt: Doubt) -> End {
     End::error(CheckName::Rules, Cause::Station, finding)
 }
 
-pub(super) fn rule_broken(rule: Rule, posed: impl Into<Posed>, right: Answer, found: Answer) -> Finding {
+fn rule_broken(rule: Rule, posed: impl Into<Posed>, right: Answer, found: Answer) -> Finding {
     let Posed { kind, asked } = posed.into();
     Finding::RuleBroken { rule, request: kind.to_string(), right, found, asked }
 }

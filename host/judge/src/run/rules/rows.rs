@@ -12,7 +12,7 @@ use super::{FIRST_FACTOR, Rules, counter_wrong, doubted, of_rows, other_row, pay
 use crate::board::CameAgain;
 use crate::reference::correct;
 use crate::result::{CheckName, Counter, Doubt, Rule};
-use crate::run::at_speed::{BY_TURNS, fit};
+use crate::run::drawn::{BY_TURNS, fit};
 use crate::run::findings::{During, End};
 use crate::tables::Generation;
 

@@ -6,7 +6,7 @@ use halfrow_model::{Content, Geometry, MIN_WIDTH, Phase, TableSet};
 use rand_pcg::Pcg64Mcg;
 
 use crate::board::{Capabilities, NumberedFrame};
-use crate::run::at_speed::{CALM, drawn_factors, drawn_kernel};
+use crate::run::drawn::{Weights, drawn_factors, drawn_kernel};
 use crate::run::plan::variations::Build;
 use crate::tables::Generation;
 
@@ -42,7 +42,11 @@ impl Small {
         let mut draws = Pcg64Mcg::new(u128::from(seed) | 1 << 65);
         let mut drawn = || {
             let tables = drawn_factors(tall, build.ring, &mut draws)?;
-            Some(Generation { number: 0, tables, kernel: drawn_kernel(build.taps, CALM, &mut draws)? })
+            Some(Generation {
+                number: 0,
+                tables,
+                kernel: drawn_kernel(build.taps, Weights::Calm, &mut draws)?,
+            })
         };
         let tables = [drawn()?, drawn()?];
         let Capabilities { latency, entered: names_entered, .. } = *capabilities;

@@ -8,7 +8,7 @@ use super::Rules;
 use super::compared::Compared;
 use crate::board::{Capabilities, RowTiming};
 use crate::result::{CheckName, Rule};
-use crate::run::at_speed::drawn_factors;
+use crate::run::drawn::drawn_factors;
 use crate::run::findings::{During, End};
 use crate::tables::Generation;
 

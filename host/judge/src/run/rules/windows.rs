@@ -2,11 +2,10 @@
 
 use super::counts::equal;
 use super::rows::TRIES;
-use super::{Rules, counter_wrong, doubted};
+use super::{Posed, Rules, counter_wrong, doubted, rule_broken};
 use crate::board::{Board, Status, Tally};
-use crate::result::{CheckName, Counter, Doubt, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Rule};
 use crate::run::findings::{During, End};
-use crate::run::sessions::window::window_wrong;
 
 /// A row sequence number below the greatest that the rules reach, and far from any that they used.
 const SMALLER: u32 = 3 << 29;
@@ -105,4 +104,10 @@ impl Rules<'_, '_> {
         self.right += 1;
         Ok(())
     }
+}
+
+/// After a RESET the board gives credit for `rows`, in its answer to a request, instead of for `right`.
+pub(in crate::run) fn window_wrong(posed: impl Into<Posed>, right: u32, rows: u32) -> Finding {
+    let (right, found) = (Answer::Credit { rows: right }, Answer::Credit { rows });
+    rule_broken(Rule::Window, posed, right, found)
 }

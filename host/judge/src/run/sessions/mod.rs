@@ -2,7 +2,7 @@
 
 mod reconnect;
 pub(super) mod second_look;
-pub(super) mod window;
+mod window;
 
 use std::error::Error;
 use std::time::{Duration, Instant};

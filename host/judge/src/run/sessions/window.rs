@@ -1,8 +1,8 @@
 //! Looks at the window of a board that refused a row as beyond it, or did not bring one back however often it was sent.
 
-use crate::result::{Answer, Finding, Rule};
+use crate::result::Finding;
 use crate::run::findings::End;
-use crate::run::rules::{Posed, rule_broken};
+use crate::run::rules::window_wrong;
 use crate::run::steps::Run;
 
 /// How often the window must be wrong.
@@ -33,10 +33,4 @@ impl Run<'_> {
             _ => end,
         }
     }
-}
-
-/// After a RESET the board gives credit for `rows`, in its answer to a request, instead of for `right`.
-pub(crate) fn window_wrong(posed: impl Into<Posed>, right: u32, rows: u32) -> Finding {
-    let (right, found) = (Answer::Credit { rows: right }, Answer::Credit { rows });
-    rule_broken(Rule::Window, posed, right, found)
 }
