@@ -2,7 +2,9 @@
 //! A new kind is a line here and a module.
 
 use crate::discovery::{Found, serial_ports, usb_chips};
-use crate::open::{check_replay, check_simulated, open_mock, open_replay, open_simulated};
+use crate::mock_board::open_mock;
+use crate::open::{check_simulated, open_simulated};
+use crate::replay::{check_replay, open_replay};
 use crate::{BoardKind, Link, OpenError, SerialLink, Target, TcpLink, UsbLink};
 
 /// A way to write a target.

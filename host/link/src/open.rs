@@ -3,16 +3,13 @@
 use std::error::Error;
 use std::path::Path;
 
-use halfrow_mock::{BoardFault, ConnectError, board_build, board_fault};
 use halfrow_pipe::TargetError;
 
 #[cfg(feature = "sim")]
 pub(crate) use super::simulated::{check_simulated, open_simulated};
-use super::{Candidate, Link, OpenError, Recording, Reopener, ReplayLink, WireLink};
+use super::{Candidate, OpenError, Reopener};
 use crate::kinds::{self, Kind};
 use crate::target::{BoardKind, Target};
-
-const MOCK: &str = "the mock board";
 
 /// Checks that `target` is written correctly. This is possible before its board is plugged in or powered.
 ///
@@ -42,41 +39,13 @@ pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     Ok(Candidate { target: target.to_string(), kind: kind.board, link, reopen })
 }
 
-/// The fault that a `mock` target asks for, and the build that has it; none if it asks for none, or for another kind of target.
-///
-/// # Errors
-/// [`OpenError`] when the mock board does not have these options.
-pub fn fault(target: &Target) -> Result<Option<(BoardFault, halfrow_mock::Options)>, OpenError> {
-    if target.kind != "mock" {
-        return Ok(None);
-    }
-    let mut options = options_of(target);
-    pace(MOCK, target, &mut options)?;
-    let wrong = |source| wrong_options(MOCK, target, with_keys(source, &[PACE]));
-    let Some(fault) = board_fault(&options).map_err(wrong)? else { return Ok(None) };
-    Ok(Some((fault, board_build(&options).map_err(wrong)?)))
-}
-
-pub(crate) fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
-    if let Some(address) = &target.address {
-        return Err(OpenError::NoAddress { kind: target.kind.clone(), address: address.clone() });
-    }
-    let mut options = options_of(target);
-    let paced = pace(MOCK, target, &mut options)?;
-    let pipe = halfrow_mock::connect(&options).map_err(|error| match error {
-        ConnectError::Target(source) => wrong_options(MOCK, target, with_keys(source, &[PACE])),
-        other => wrong_options(MOCK, target, other),
-    })?;
-    Ok(Box::new(WireLink::new(pipe, MOCK, paced)))
-}
-
 #[cfg(not(feature = "sim"))]
 pub(crate) fn check_simulated(target: &Target) -> Result<(), OpenError> {
     Err(OpenError::NoSimulation(target.to_string()))
 }
 
 #[cfg(not(feature = "sim"))]
-pub(crate) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+pub(crate) fn open_simulated(target: &Target) -> Result<Box<dyn crate::Link>, OpenError> {
     Err(OpenError::NoSimulation(target.to_string()))
 }
 
@@ -136,24 +105,6 @@ pub(super) fn wrong_options(
     OpenError::Options { board, target: target.to_string(), source: Box::new(source) }
 }
 
-pub(crate) fn open_replay(target: &Target) -> Result<Box<dyn Link>, OpenError> {
-    Ok(Box::new(ReplayLink::new(read_replay(target)?)?))
-}
-
-/// The recording that `target` names; none for another kind of target.
-///
-/// # Errors
-/// [`OpenError`] when it names no file, or the file is no recording.
-pub fn recording(target: &Target) -> Result<Option<Recording>, OpenError> {
-    if target.kind == "replay" { read_replay(target).map(Some) } else { Ok(None) }
-}
-
-/// The file of the recording that `target` names; none for another kind of target.
-#[must_use]
-pub fn recording_file(target: &Target) -> Option<&Path> {
-    target.address.as_deref().filter(|_| target.kind == "replay").map(Path::new)
-}
-
 /// How a target names the file that its board writes. Only a simulated board does.
 pub const WRITTEN_FILE: &str = "trace=FILE";
 
@@ -162,26 +113,4 @@ pub const WRITTEN_FILE: &str = "trace=FILE";
 #[must_use]
 pub fn written_file(target: &Target) -> Option<&Path> {
     target.option(kinds::of(target)?.writes?).map(Path::new)
-}
-
-/// The board that answered in `recording`, which `target` names.
-///
-/// # Errors
-/// [`OpenError::Recording`] when its head is damaged.
-pub fn replay(target: &Target, recording: Recording) -> Result<Candidate, OpenError> {
-    let link = Box::new(ReplayLink::new(recording)?);
-    Ok(Candidate { target: target.to_string(), kind: BoardKind::Replay, link, reopen: None })
-}
-
-pub(crate) fn check_replay(target: &Target) -> Result<(), OpenError> {
-    file_of(target).map(|_| ())
-}
-
-fn read_replay(target: &Target) -> Result<Recording, OpenError> {
-    Ok(Recording::read(Path::new(file_of(target)?))?)
-}
-
-fn file_of(target: &Target) -> Result<&str, OpenError> {
-    let file = target.address.as_deref().filter(|file| !file.is_empty());
-    file.ok_or_else(|| OpenError::address_missing(target))
 }

@@ -1,11 +1,13 @@
 //! A recording as a link: it answers as the board did, byte for byte and at the same times.
 
+use std::path::Path;
 use std::time::Duration;
 
 use serde::de::IgnoredAny;
 
-use super::{LineErrors, Link, LinkError, Recording, RecordingError};
+use super::{Candidate, LineErrors, Link, LinkError, OpenError, Recording, RecordingError};
 use crate::recording::Head;
+use crate::target::{BoardKind, Target};
 
 /// The most bytes that a stopped host sends to close its session: a RESET, sent more than once.
 const PARTING: usize = 128;
@@ -110,6 +112,46 @@ impl Link for ReplayLink {
     fn line_errors(&self) -> LineErrors {
         self.line_errors
     }
+}
+
+pub(crate) fn open_replay(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+    Ok(Box::new(ReplayLink::new(read_replay(target)?)?))
+}
+
+/// The recording that `target` names; none for another kind of target.
+///
+/// # Errors
+/// [`OpenError`] when it names no file, or the file is no recording.
+pub fn recording(target: &Target) -> Result<Option<Recording>, OpenError> {
+    if target.kind == "replay" { read_replay(target).map(Some) } else { Ok(None) }
+}
+
+/// The file of the recording that `target` names; none for another kind of target.
+#[must_use]
+pub fn recording_file(target: &Target) -> Option<&Path> {
+    target.address.as_deref().filter(|_| target.kind == "replay").map(Path::new)
+}
+
+/// The board that answered in `recording`, which `target` names.
+///
+/// # Errors
+/// [`OpenError::Recording`] when its head is damaged.
+pub fn replay(target: &Target, recording: Recording) -> Result<Candidate, OpenError> {
+    let link = Box::new(ReplayLink::new(recording)?);
+    Ok(Candidate { target: target.to_string(), kind: BoardKind::Replay, link, reopen: None })
+}
+
+pub(crate) fn check_replay(target: &Target) -> Result<(), OpenError> {
+    file_of(target).map(|_| ())
+}
+
+fn read_replay(target: &Target) -> Result<Recording, OpenError> {
+    Ok(Recording::read(Path::new(file_of(target)?))?)
+}
+
+fn file_of(target: &Target) -> Result<&str, OpenError> {
+    let file = target.address.as_deref().filter(|file| !file.is_empty());
+    file.ok_or_else(|| OpenError::address_missing(target))
 }
 
 #[cfg(test)]
