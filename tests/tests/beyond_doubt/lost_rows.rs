@@ -156,7 +156,7 @@ type Denial = fn(&mut Status);
 fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
     let admitted = withheld(|_| {});
     assert_eq!(admitted.verdict(), Verdict::Fail, "{}", admitted.headline());
-    let denials: [(&str, Denial); 7] = [
+    let denials: [(&str, Denial); 8] = [
         ("it did not take it", |status| status.rows_in = status.rows_in.saturating_sub(1)),
         ("it waits for it", |status| status.next_row_in = status.next_row_out),
         ("it sent it again", |status| status.rows_repeated += 1),
@@ -164,6 +164,7 @@ fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
         ("it was acknowledged", |status| status.next_row_out += 1),
         ("packets are missing", |status| status.packets = status.packets.saturating_sub(1)),
         ("packets were damaged", |status| status.crc_errors += 1),
+        ("packets were another host's", |status| status.foreign_packets += 1),
     ];
     for (what, denial) in denials {
         let report = withheld(denial);
@@ -195,6 +196,35 @@ fn a_row_is_not_swallowed_where_echoes_come_back_otherwise() {
             packet.payload[0] ^= 1;
         }
         withhold(packet, |_| {})
+    });
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
+    assert_eq!(report.finding, Finding::RowLostAmongOthers { row: 3, frame: 0 });
+}
+
+/// What comes twice or late may have come in place of the row, too.
+#[test]
+fn a_row_is_not_swallowed_where_answers_come_twice() {
+    let report = judge(&System::TINY, move |toward, packet| {
+        if toward == Toward::Host && packet.is(Kind::Echo) {
+            return vec![packet.clone(), packet];
+        }
+        withhold(packet, |_| {})
+    });
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
+    assert_eq!(report.finding, Finding::RowLostAmongOthers { row: 3, frame: 0 });
+}
+
+/// The link spoils the echoes beside it the first time that its frame is played again.
+#[test]
+fn a_row_that_was_once_missing_beside_other_trouble_is_not_said_to_be_lost_alone_each_time() {
+    let (mut lost, mut spoilt) = (0, 0);
+    let report = judge(&System::TINY, move |toward, mut packet| {
+        lost += u32::from(toward == Toward::Host && is_row_out(&packet, 3));
+        if lost > 0 && spoilt < 8 && toward == Toward::Host && packet.is(Kind::Echo) {
+            spoilt += 1;
+            packet.payload[0] ^= 1;
+        }
+        withhold(packet, |status| status.rows_unneeded = 0)
     });
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert_eq!(report.finding, Finding::RowLostAmongOthers { row: 3, frame: 0 });
