@@ -2,6 +2,7 @@
 
 use halfrow::board::RefusalCode;
 use halfrow::result::{Report, Rule};
+use halfrow::verdict::{Cause, Verdict};
 use halfrow_protocol::message::{Refusal, ResetLevel};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward};
@@ -41,20 +42,38 @@ fn is_row_with(packet: &Passing, is_meant: impl FnOnce(&[u8]) -> bool) -> bool {
     packet.is(Kind::RowIn) && packet.payload.len() > PLACE && is_meant(&packet.payload)
 }
 
-#[test]
-fn the_unused_bits_of_a_row_that_is_in_place_are_ignored() {
+/// Whether it is a row that is in its place and has what a board must ignore.
+fn is_marked_in_place(packet: &Passing) -> bool {
     let is_marked = |row: &[u8]| row[FLAGS] & !1 != 0 && row[GENERATION] != 0;
     // Rows that must be refused are black, and a byte follows their samples.
     let is_black = |row: &[u8]| row[PLACE..row.len() - 1].iter().all(|&byte| byte == 0);
-    let meant = move |packet: &Passing| is_row_with(packet, |row| is_marked(row) && !is_black(row));
-    assert_eq!(broken(&refusing_instead(meant, RefusalCode::Row)).0, Rule::Skipped);
+    is_row_with(packet, |row| is_marked(row) && !is_black(row))
 }
 
-/// Any other row of 66 samples must be refused so, since no frame of the run has that width.
+/// No frame of the run has the width of this one.
+fn is_row_of_66(packet: &Passing) -> bool {
+    is_row_with(packet, |row| row[WIDTH] == [66, 0])
+}
+
+#[test]
+fn the_unused_bits_of_a_row_that_is_in_place_are_ignored() {
+    assert_eq!(broken(&refusing_instead(is_marked_in_place, RefusalCode::Row)).0, Rule::Skipped);
+}
+
+/// Any other row of 66 samples must be refused so.
 #[test]
 fn that_a_row_is_known_comes_before_its_width() {
-    let meant = |packet: &Passing| is_row_with(packet, |row| row[WIDTH] == [66, 0]);
-    assert_eq!(broken(&refusing_instead(meant, RefusalCode::Row)).0, Rule::Banks);
+    assert_eq!(broken(&refusing_instead(is_row_of_66, RefusalCode::Row)).0, Rule::Banks);
+}
+
+/// A host that stood still may have lost it.
+#[test]
+fn a_board_that_refuses_a_row_since_it_has_lost_its_session_breaks_no_rule() {
+    for meant in [is_marked_in_place, is_row_of_66] {
+        let report = refusing_instead(meant, RefusalCode::Session);
+        assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::Station));
+        assert!(report.headline().contains("no longer knows this session"), "{}", report.headline());
+    }
 }
 
 #[test]
