@@ -207,3 +207,14 @@ fn a_soak_says_for_how_long_no_frames_were_made() {
     let (idle, said) = soaked(0);
     assert!(idle.is_none() && said.starts_with("1 min 30 s of 1 min 30 s: "), "{idle:?}, {said}");
 }
+
+/// Whoever asks for frames has them all, however long they took.
+#[test]
+fn a_soak_of_so_many_frames_is_none_the_shorter_for_time_without_frames() {
+    let length = AtSpeed::Soak(SoakLength::Frames { frames: 1200 });
+    let report = standing_still_after(Kind::Commit, Duration::from_secs(12), length);
+    passes(&report, "a soak");
+    let soak = report.soak.as_ref().unwrap();
+    assert!(soak.frames == 1200 && soak.idle_seconds > soak.seconds / 10.0, "{soak:?}");
+    assert!(!report.not_exercised.iter().any(|part| matches!(part, NotExercised::IdleTime { .. })));
+}

@@ -8,8 +8,8 @@ use halfrow::link;
 use halfrow::progress::Event;
 use halfrow::report;
 use halfrow::result::{
-    BurstCount, CheckName, Defect, Finding, MadeAs, NotExercised, Outcome, Repetition, Report, SoakLength,
-    Suspect,
+    BurstCount, Check, CheckName, Defect, Finding, MadeAs, NotExercised, Outcome, Repetition, Report,
+    SoakLength, Suspect,
 };
 use halfrow::run::{AtSpeed, Part, Plan, RunOptions, Selection, verify};
 use halfrow::verdict::Verdict;
@@ -240,9 +240,9 @@ fn frames_with_pauses_put_nothing_to_the_test_that_streamed_rows_did_not() {
     assert!(unused, "{:?}", report.not_exercised);
 }
 
-#[test]
-fn a_soak_with_a_pause_was_none_at_full_speed() {
-    let mut alter = with_record(2, |record| record.pauses = 7);
+/// The report on a soak of 3000 frames in which `change` makes another first record of the second burst.
+fn soaked_with_record(change: fn(&mut FrameRecord)) -> Report {
+    let mut alter = with_record(2, change);
     // Bursts of a minute have 1153 frames: (64·8 + 8) clocks each.
     let slow = Options { pixel_clock: 10_000, ..Options::default() };
     let board = Altered::new(&slow, move |toward, packet| vec![alter(toward, packet)]);
@@ -250,7 +250,17 @@ fn a_soak_with_a_pause_was_none_at_full_speed() {
     let report =
         judge_by_plan(&Plan { at_speed: soak, fail_fast: false, ..System::TINY.plan() }, board.candidate());
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
-    let check = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
+    report
+}
+
+fn at_speed(report: &Report) -> &Check {
+    report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap()
+}
+
+#[test]
+fn a_soak_with_a_pause_was_none_at_full_speed() {
+    let report = soaked_with_record(|record| record.pauses = 7);
+    let check = at_speed(&report);
     assert_eq!(check.outcome, Outcome::Skipped, "{}", check.detail());
     assert!(
         matches!(check.finding, Finding::PausedAtSpeed { frames: 3000, paused: 1 }),
@@ -258,6 +268,19 @@ fn a_soak_with_a_pause_was_none_at_full_speed() {
         check.detail()
     );
     assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
+}
+
+#[test]
+fn a_soak_says_how_many_of_its_frames_waited_for_the_host() {
+    let waited = |change| {
+        let report = soaked_with_record(change);
+        let waited = report.soak.as_ref().unwrap().held_back;
+        let said = at_speed(&report).detail();
+        assert!(waited == 0 || said.contains(&format!("; {waited} of them waited until")), "{said}");
+        waited
+    };
+    // The first frame of a burst waits for none.
+    assert_eq!(waited(|record| record.held_back = true), waited(|_| {}) + 1);
 }
 
 /// A board closes a session in which it hears nothing for 10 s (AT-SPEED.md, *Ends*), and a slow host may take 60 ms for a frame.
