@@ -80,3 +80,24 @@ fn a_unit_has_not_passed_by_a_run_from_before_a_person_bound_it_anew() {
         }
     }
 }
+
+/// A person had bound what a person gives to another unit.
+#[test]
+fn a_unit_has_not_passed_by_a_run_as_a_device_that_is_another_unit_s_since() {
+    let station = Station::with(&plan("refuse"));
+    let passes = |serial, board| {
+        let did = station.run(serial, &device(board));
+        assert_eq!(did.code, Some(0), "{serial} as {board}: {did:?}");
+    };
+    let bind = |serial, device, reason| {
+        let did = rebind(&station, &["--serial", serial, "--device", device, "--reason", reason]);
+        assert_eq!(did.code, Some(0), "{did:?}");
+    };
+    passes("CAT00001", 0x11);
+    bind("CAT00001", "0000000000000022", "FPGA exchanged");
+    passes("CAT00001", 0x22);
+    assert_eq!(station.run("CAT00001", &device(0x22)).code, Some(2), "it has passed");
+    passes("CAT00002", 0x33);
+    bind("CAT00002", "0000000000000022", "labels exchanged");
+    passes("CAT00001", 0x44);
+}
