@@ -283,6 +283,22 @@ fn a_soak_says_how_many_of_its_frames_waited_for_the_host() {
     assert_eq!(waited(|record| record.held_back = true), waited(|_| {}) + 1);
 }
 
+/// Only a burst with the trap set keeps a row of what does not happen again, and the first one has none.
+#[test]
+fn a_soak_suspects_what_a_later_burst_has_shown_of_a_row() {
+    let target = "mock,pixel-clock=10000,fault=slow-path,one-in=300000".parse().unwrap();
+    let soak = AtSpeed::Soak(SoakLength::Frames { frames: 4000 });
+    let plan = Plan { at_speed: soak, fail_fast: false, ..System::TINY.plan() };
+    let report = judge_by_plan(&plan, link::open(&target).unwrap());
+    let names_row = |suspects: &[Suspect]| {
+        suspects.iter().any(|it| matches!(it.defect, Defect::SeenAtSpeed { row: Some(_), .. }))
+    };
+    let [first, later @ ..] = &report.soak.as_ref().unwrap().differences[..] else { panic!("it differs") };
+    assert!(first.seconds < 60.0 && !names_row(&first.suspects), "{first:?}");
+    let shown = later.iter().find(|later| names_row(&later.suspects)).unwrap();
+    assert_eq!(report.suspects, shown.suspects, "{}", report.headline());
+}
+
 /// A board closes a session in which it hears nothing for 10 s (AT-SPEED.md, *Ends*), and a slow host may take 60 ms for a frame.
 #[test]
 fn a_host_that_has_many_records_to_judge_does_not_fall_silent() {
