@@ -288,3 +288,23 @@ fn what_a_run_began_with_is_no_mismatch_though_it_is_bound_otherwise_since() {
     assert_eq!(told(&server), [""; 0]);
     assert_eq!(faults(&server, "plant"), [""; 0]);
 }
+
+/// A person has given the device to another unit since, of which the second station does not know.
+#[test]
+fn what_was_bound_until_a_person_changed_it_is_a_mismatch_afterwards() {
+    let server = Server::prepared();
+    let [d1, d2, ..] = DEVICES;
+    send_as("station 7", station("station 7", 1, &[("B1", d1), ("B2", d2)]), server.address());
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    plant.take(&rebinding(1, "B2", Some(d1))).unwrap();
+    let [before, after] = &parcels(&[
+        judged("station 8", 3, "B1", (DeviceSeen::New, d1)),
+        judged("station 8", 150, "B1", (DeviceSeen::Known, d1)),
+    ])[..] else {
+        panic!("two runs")
+    };
+    plant.take(before).unwrap();
+    assert_eq!(told(&server), [""; 0]);
+    plant.take(after).unwrap();
+    assert_eq!(told(&server), ["station 8: d1 as B1, a person: d1 as B2"]);
+}
