@@ -9,9 +9,10 @@ use halfrow::progress::Silent;
 use halfrow::result::{Finding, Report};
 use halfrow::run::{RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
-use halfrow_protocol::message::{Refusal, RefusalCode};
+use halfrow_mock::Options;
+use halfrow_protocol::message::{Refusal, RefusalCode, Welcome};
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::{Passing, Toward};
+use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::{System, judge_reconnecting};
 
@@ -160,4 +161,45 @@ fn a_row_that_a_link_broke_at_is_told_by_its_frame() {
     let [frame] = &report.frames[..] else { panic!("{:?}", report.frames) };
     let waited_for = format!("waiting for row {} of frame {}", frame.rows, frame.number);
     assert!(report.headline().contains(&waited_for), "{}", report.headline());
+}
+
+/// The packet as a board with another number says it.
+fn of_another_board(packet: Passing) -> Passing {
+    match packet.reply() {
+        Some(Reply::Hello(welcome)) => {
+            packet.saying(&Reply::Hello(Welcome { serial: !welcome.serial, ..welcome }))
+        }
+        _ => packet,
+    }
+}
+
+/// A board whose rows are wrong until it is exchanged without a sign: another one answers the greeting of the second look, which it
+/// has since a CONFIGURE came twice. The link breaks at the next CONFIGURE.
+fn exchanged_before_an_outage() -> Candidate {
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let (cut, mut greetings, mut configured) = (Arc::clone(&is_cut), 0, false);
+    let alter = move |toward, packet: Passing| {
+        if toward == Toward::Host {
+            let packet = if greetings > 1 { of_another_board(packet) } else { packet };
+            return vec![packet.with_row(|_, packed| packed[0] ^= 1)];
+        }
+        greetings += usize::from(packet.is(Kind::Hello));
+        cut.store(greetings > 1 && packet.is(Kind::Configure), Ordering::Relaxed);
+        let is_first = packet.is(Kind::Configure) && !std::mem::replace(&mut configured, true);
+        let twice = is_first.then(|| packet.clone());
+        twice.into_iter().chain([packet]).collect()
+    };
+    breakable(alter, is_cut)
+}
+
+/// The board that comes back is the one that was greeted last, and not the one that was judged.
+#[test]
+fn a_board_that_was_exchanged_before_an_outage_is_another_board() {
+    let other = || Altered::new(&Options::default(), |_, packet| vec![of_another_board(packet)]);
+    let reopen: Reopener = Box::new(move || Ok(other().candidate().link));
+    let candidate = Candidate { reopen: Some(reopen), ..exchanged_before_an_outage() };
+    let report = judge_reconnecting(&System::TINY.plan(), Some(LIMIT), candidate);
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
+    let Finding::SecondLookBrokenOff(broken_off) = &report.finding else { panic!("{}", report.headline()) };
+    assert_eq!(broken_off.reason, Finding::BoardExchanged {});
 }
