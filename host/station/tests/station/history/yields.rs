@@ -190,6 +190,22 @@ fn a_unit_belongs_to_the_lane_and_the_day_of_its_first_judgement() {
     assert_eq!(yields(&made.now(), &second, By::Plan).unwrap().flips, Vec::new());
 }
 
+/// A was judged in the first hour, and B in the second one of the same day.
+#[test]
+fn a_waived_unit_counts_in_the_hour_in_which_it_was_judged_alone() {
+    let mut made = Made::new();
+    for (word, hour) in [("A:W", 0), ("B:P", 1)] {
+        enter(&mut made, word, hour);
+    }
+    let waived = |hour: i64| {
+        let from_ms = BEGIN_MS + hour * HOUR_MS;
+        let period = Period { from_ms, until_ms: from_ms + HOUR_MS };
+        let found = yields(&made.now(), &Wanted { period, ..Wanted::default() }, By::Plan).unwrap();
+        found.lines.iter().map(|line| (line.first_pass.of, line.waived)).collect::<Vec<_>>()
+    };
+    assert_eq!([0, 1].map(waived), [[(1, 1)], [(1, 0)]]);
+}
+
 /// A shift counts its own boards, whenever it is midnight in UTC, and whatever a clock that was ahead has dated.
 #[test]
 fn the_day_so_far_is_the_one_by_the_clock_on_the_wall() {
