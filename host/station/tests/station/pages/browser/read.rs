@@ -91,7 +91,7 @@ fn a_screen_reader_says_at_which_table_the_keyboard_is() {
     let mut page = Chromium::open("about:blank");
     for (path, names) in [
         (format!("/runs/{run}"), &["Checks, verify", "Measurements", "Steps"][..]),
-        ("/yield?by=day".to_owned(), &["First pass: quick", "Yield"]),
+        ("/yield?by=day".to_owned(), &["First pass: CAM-T quick", "Yield"]),
         ("/pareto".to_owned(), &["What fails most"]),
     ] {
         opened(&mut page, &serving, &path);
