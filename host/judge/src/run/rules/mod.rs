@@ -47,7 +47,6 @@ use compared::{Compared, WrongRow};
 use posed::Posed;
 pub(super) use price::price;
 pub(super) use quoted::answer;
-use quoted::answers;
 use refusals::Refusals;
 use small::Small;
 pub(super) use trap::tallest_of_rules;
@@ -188,7 +187,7 @@ impl<'a, 'run> Rules<'a, 'run> {
                 self.refusals.note(right);
                 return Ok(());
             }
-            Ok(said) => answers(posed.kind, right, &said),
+            Ok(said) => quoted::answers(posed.kind, right, &said),
             Err(BoardError::NoAnswer { heard, .. }) if heard.damaged == 0 && self.had_it_each_time() => {
                 return Err(unanswered(rule, posed, answer(right)));
             }
