@@ -69,16 +69,25 @@ async fn page(
     let content = html! {
         h1 { (title) }
         h2 { (visit.say("jobs.boards")) }
-        @if boards.is_empty() { p.nothing { (visit.say("jobs.no_boards")) } } @else { (shelf(&visit, &boards, &seen)) }
+        @if boards.is_empty() { (nothing(visit.say("jobs.no_boards"))) } @else { (shelf(&visit, &boards, &seen)) }
         @if !waiting.is_empty() { (queue(&visit, &waiting)) }
         h2 { (visit.say("jobs.listed")) }
         (states_to_choose(&visit, &asked.state, &counted))
-        @if jobs.is_empty() { p.nothing { (visit.say("jobs.none")) } } @else { (table(&visit, &jobs, &seen)) }
+        @if jobs.is_empty() { (nothing(visit.say("jobs.none"))) } @else { (table(&visit, &jobs, &seen)) }
         @if let Some(last) = jobs.last().filter(|_| is_more) {
             p { a href=(format!("/jobs?state={}&after={}", asked.state, last.id)) { (visit.say("jobs.more")) } }
         }
     };
     Ok(Page { here: Here::Jobs, title, head: show::head(), content }.answer(&visit))
+}
+
+/// That there is nothing, with the command that changes it between backticks.
+fn nothing(words: &str) -> Markup {
+    html! {
+        p.nothing {
+            @for (nth, part) in words.split('`').enumerate() { @if nth % 2 == 1 { code { (part) } } @else { (part) } }
+        }
+    }
 }
 
 /// What the page shows.
