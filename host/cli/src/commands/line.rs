@@ -146,8 +146,9 @@ commands! {
     /// Serve a mock or simulated board to other programs
     ///
     /// The board is put behind a pseudo-terminal or a TCP port. The command prints the target that leads to it, and serves until
-    /// Ctrl-C or SIGTERM. It serves one host at a time; if a host vanishes, the next one can use the board. A board whose wire
-    /// breaks (fault=disconnect) hangs up, like a board that is unplugged.
+    /// Ctrl-C or SIGTERM. It serves one host at a time; others are turned away until that one is gone, or silent for 10 s. If it is
+    /// gone without ending its session, the board is held for it for up to 10 s. A board whose wire breaks (fault=disconnect) hangs
+    /// up, like a board that is unplugged.
     Serve(super::serve::Arguments), "serve";
     /// Start the production station, a program of its own
     ///
