@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::fs::{self, File};
 use std::hash::{BuildHasher as _, RandomState};
 use std::iter;
-use std::net::TcpListener;
+use std::net::{TcpListener, TcpStream};
 use std::ops::{Deref, DerefMut};
 use std::os::unix::fs::FileTypeExt as _;
 use std::path::{Path, PathBuf};
@@ -160,6 +160,12 @@ pub(crate) fn silent_board() -> (TcpListener, String) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     (listener, target)
+}
+
+/// The next connection to `listener`.
+pub(crate) fn accepted(listener: &TcpListener) -> TcpStream {
+    listener.set_nonblocking(true).unwrap();
+    until_found("a connection", || listener.accept()).0
 }
 
 /// Says that something is over when it is dropped, however the test ends.

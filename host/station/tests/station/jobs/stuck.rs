@@ -2,7 +2,7 @@
 
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::Instant;
 
 use halfrow::verdict::StoppedBy;
@@ -13,7 +13,7 @@ use tempfile::TempDir;
 
 use super::{add, at_work, judged, settings, settings_of, shared, states, with_a_job};
 use crate::common::{
-    Did, Killed, command, did_in, engel, free_port, instead, program, reason, signal, until_found,
+    Did, Killed, accepted, command, did_in, engel, free_port, instead, program, reason, signal, until_found,
 };
 use crate::history::made::Made;
 use crate::lanes::floor::HANG;
@@ -97,8 +97,8 @@ fn a_station_ends_when_it_is_told_to_though_the_plant_cannot_be_told_that_a_boar
     let plant = TcpListener::bind("127.0.0.1:0").unwrap();
     let folder = crate::common::folder();
     let _outlived = outlived_without_plant(plant.local_addr().unwrap().port(), folder.path());
-    let mut worker = Killed(command(folder.path(), &["work"]).stderr(Stdio::null()).spawn().unwrap());
-    let _asked = plant.accept().unwrap();
+    let mut worker = Killed(command(folder.path(), &["work"]).spawn().unwrap());
+    let _asked = accepted(&plant);
     signal(worker.id(), Signal::SIGTERM);
     let ended = until_found("its end", || worker.try_wait().unwrap().ok_or("at work"));
     assert_eq!(ended.code(), Some(143));

@@ -1,9 +1,9 @@
 //! Every way in which runs in several lanes can end.
 
-use std::io::{self, ErrorKind, Read as _};
+use std::io::{self, Read as _};
 use std::net::TcpListener;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use halfrow::verdict::StoppedBy;
 use halfrow_station::engine::{Engine, LaneState};
@@ -13,20 +13,12 @@ use halfrow_station::store::{Folder, Store};
 use nix::sys::signal::Signal;
 use serde_json::Value;
 
-use super::floor::{HANG, Running, SERIALS, Station};
-use crate::common::{exists, lane_process, program, signal, silent_board, until};
+use super::floor::{Running, SERIALS, Station};
+use crate::common::{accepted, exists, lane_process, program, signal, silent_board, until};
 
 /// Waits until the lane has connected, and keeps the connection.
 pub(crate) fn connected(listener: &TcpListener) {
-    listener.set_nonblocking(true).unwrap();
-    let until = Instant::now() + HANG;
-    let mut connection = loop {
-        match listener.accept() {
-            Ok((connection, _)) => break connection,
-            Err(error) => assert!(error.kind() == ErrorKind::WouldBlock && Instant::now() < until, "{error}"),
-        }
-        thread::sleep(Duration::from_millis(20));
-    };
+    let mut connection = accepted(listener);
     assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
     thread::spawn(move || while connection.read(&mut [0; 64]).is_ok_and(|read| read > 0) {});
 }
@@ -121,7 +113,7 @@ fn no_board_is_taken_while_the_station_closes() {
     let is_ready = |lane: &LaneState| lane.state == Word::Ready;
     until("lanes that are ready", || engine.lanes().iter().all(is_ready));
     engine.label(1, Some(0), SERIALS[0], "weber", None);
-    let (mut board, _) = listener.accept().unwrap();
+    let mut board = accepted(&listener);
     let database = rusqlite::Connection::open(folder.database()).unwrap();
     database.execute_batch("BEGIN IMMEDIATE").unwrap();
     thread::scope(|scope| {
