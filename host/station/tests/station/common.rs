@@ -3,12 +3,13 @@
 use std::fmt::Debug;
 use std::fs::{self, File};
 use std::hash::{BuildHasher as _, RandomState};
+use std::io::Write as _;
 use std::iter;
 use std::net::{TcpListener, TcpStream};
 use std::ops::{Deref, DerefMut};
 use std::os::unix::fs::FileTypeExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -283,6 +284,15 @@ pub(crate) fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(program());
     command.args(arguments).arg("--settings").arg(folder.join("station.toml"));
     command
+}
+
+/// What `command` does, which may read this.
+pub(crate) fn told(command: &mut Command, said: &str) -> Output {
+    let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = pipes.spawn().unwrap();
+    // Whatever refuses its call does not read it.
+    let _ = child.stdin.take().unwrap().write_all(said.as_bytes());
+    child.wait_with_output().unwrap()
 }
 
 /// Runs the program while the system refuses this of the file at `path`.

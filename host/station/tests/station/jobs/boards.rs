@@ -19,10 +19,7 @@ fn waiter(name: &str) -> Waiter {
 #[test]
 fn who_waits_longest_is_the_next_and_a_job_comes_after_people() {
     let (server, mut plant, _) = with_a_job();
-    let [first, second, third] = ["first", "second", "third"].map(|name| {
-        thread::sleep(std::time::Duration::from_millis(2));
-        waiter(name)
-    });
+    let [first, second, third] = waiting([("first", "12"), ("second", "12"), ("third", "12")]);
     let Turn::Held(held) = plant.wait(&first).unwrap() else { panic!("it is free") };
     assert_eq!(plant.wait(&second).unwrap(), Turn::Waits { before: 0 });
     assert_eq!(plant.wait(&third).unwrap(), Turn::Waits { before: 1 });
@@ -92,9 +89,10 @@ fn one_for_all_and_one_for_a() -> (Server, Plant) {
 
 /// Waiters, of whom the first has waited longest.
 fn waiting<const N: usize>(who: [(&str, &str); N]) -> [Waiter; N] {
+    let mut since_ms = now_ms();
     who.map(|(name, station)| {
-        thread::sleep(std::time::Duration::from_millis(2));
-        Waiter::new("mock", name, station, now_ms()).unwrap()
+        since_ms += 1;
+        Waiter::new("mock", name, station, since_ms).unwrap()
     })
 }
 

@@ -1,14 +1,13 @@
 //! A plant's figures, over all its stations.
 
 use std::fs::{self, Permissions};
-use std::io::Write as _;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use super::figures::once;
 use super::text::{Figures, assert_sound, told};
-use crate::common::{Did, HANG, engel, folder, program, reason};
+use crate::common::{self, Did, HANG, engel, folder, program, reason};
 use crate::history::released::history;
 use crate::jobs::{add, run_out, shared, worker};
 use crate::pages::http::Request;
@@ -163,18 +162,7 @@ fn a_plant_whose_tables_a_newer_program_has_changed_meanwhile_is_not_read() {
 
 /// What the program did with these settings and this on stdin.
 fn did(arguments: &[&str], settings: &Path, said: &str) -> Did {
-    let mut child = Command::new(program())
-        .args(arguments)
-        .arg("--settings")
-        .arg(settings)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // Not every command reads stdin.
-    let _ = child.stdin.take().unwrap().write_all(said.as_bytes());
-    child.wait_with_output().unwrap().into()
+    common::told(Command::new(program()).args(arguments).arg("--settings").arg(settings), said).into()
 }
 
 /// A plant that others can reach has its own people and machines, and no lanes in its settings.

@@ -1,7 +1,7 @@
 //! A station that serves its pages.
 
 use std::fs::{self, File};
-use std::io::{BufRead as _, BufReader, Read as _, Seek as _, Write as _};
+use std::io::{BufRead as _, BufReader, Read as _, Seek as _};
 use std::os::fd::AsRawFd as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -83,20 +83,8 @@ impl Station {
         self.secrets("user", arguments, said)
     }
 
-    fn secrets(&self, command: &str, arguments: &[&str], said: &str) -> Output {
-        let mut child = Command::new(program())
-            .arg(command)
-            .args(arguments)
-            .arg("--settings")
-            .arg(self.path("station.toml"))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        // A call that is refused does not read stdin.
-        let _ = child.stdin.take().unwrap().write_all(said.as_bytes());
-        child.wait_with_output().unwrap()
+    fn secrets(&self, name: &str, arguments: &[&str], said: &str) -> Output {
+        common::told(&mut common::command(self.folder.path(), &[&[name], arguments].concat()), said)
     }
 
     pub(crate) fn serve(&self) -> Serving {
