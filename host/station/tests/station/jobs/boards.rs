@@ -4,12 +4,14 @@ use std::io::{BufRead as _, BufReader, Lines};
 use std::process::{ChildStdin, ChildStdout, Command, Stdio};
 use std::thread;
 
-use halfrow_station::store::{Plant, SharedBoard, StoreError, Turn, Waiter};
+use halfrow_station::store::{Plant, SharedBoard, StoreError, Turn, Waiter, Wanted};
 use serde_json::Value;
 
-use super::{add, board, run_out, settings, shared, states, with_a_job, worker};
+use super::claims::run_of;
+use super::{add, board, job, plan, run_out, settings, shared, states, with_a_job, worker};
 use crate::clocks::Clocks;
 use crate::common::{Killed, did_in, engel, now_ms, program, reason, until};
+use crate::history::made::End;
 use crate::plant::server::Server;
 
 fn waiter(name: &str) -> Waiter {
@@ -34,6 +36,26 @@ fn who_waits_longest_is_the_next_and_a_job_comes_after_people() {
     plant.give_back(&held).unwrap();
     assert!(plant.claim(&worker("12")).unwrap().is_some());
     assert_eq!(plant.wait(&Waiter::new("none", "first", "12", now_ms()).unwrap()).unwrap(), Turn::Never);
+}
+
+#[test]
+fn a_job_for_any_board_of_a_kind_gets_none_of_another_kind() {
+    let (_server, mut plant) = shared(1);
+    assert!(plant.share(&board(1, "ulx3s"), "engel").unwrap());
+    plant.add_jobs(&job(&plan(), &Wanted::Kind("ulx3s".to_owned())), 2).unwrap();
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    assert_eq!(claim.lease.board, "shelf-1");
+    assert_eq!(plant.claim(&worker("13")).unwrap(), None);
+}
+
+#[test]
+fn a_job_that_is_done_is_neither_cancelled_nor_refused() {
+    let (server, mut plant, id) = with_a_job();
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    plant.take(&run_of(&claim, 2, End::Pass)).unwrap();
+    assert!(!plant.cancel_job(&id, engel(&reason("too late"))).unwrap());
+    plant.refuse(&claim, "it passed already").unwrap();
+    assert_eq!(states(&server), [["done", "1"]]);
 }
 
 /// The rows of both are ready before either is committed.
